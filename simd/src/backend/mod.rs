@@ -1,0 +1,117 @@
+//! One file per instruction set, the same sections in the same order: the set, masks, what all lanes share, floats, integers.
+//!
+//! # Why this is sound
+//!
+//! Operations need no token, so a type that can be named is a licence to run its instructions. The backends' types are in
+//! private modules behind sealed traits, and the only door is [`run`], called by [`Level::run`](crate::Level::run): a
+//! [`Level`](crate::Level) is proof that detection found the instruction set. So whatever runs in an operation of a backend
+//! type runs on a CPU that has its instructions. That is the argument of [`intrinsics!`]; memory is touched only through
+//! references whose length was checked on the line above.
+
+pub(crate) mod scalar;
+pub(crate) mod serial;
+
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+mod avx2;
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+mod avx512;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+mod sse;
+
+use crate::{Isa, Kernel, Mask, Vector};
+
+/// Instructions on registers alone: the one place that calls them.
+macro_rules! intrinsics {
+    ($($body:tt)*) => {
+        // SAFETY: a backend's types are reached only through `Level::run`, whose level detection has confirmed (module docs).
+        unsafe { $($body)* }
+    };
+}
+use intrinsics;
+
+/// Binary operators with their assigning forms, each one intrinsic on the inner registers; first the type's generics.
+macro_rules! operators {
+    (@ [$($generics:tt)*] $V:ty, $Op:ident $op:ident $OpAssign:ident $op_assign:ident $intrinsic:ident) => {
+        impl<$($generics)*> $Op for $V {
+            type Output = Self;
+            #[inline(always)]
+            fn $op(self, other: Self) -> Self {
+                Self::new(intrinsics!($intrinsic(self.0, other.0)))
+            }
+        }
+        impl<$($generics)*> $OpAssign for $V {
+            #[inline(always)]
+            fn $op_assign(&mut self, other: Self) {
+                *self = self.$op(other);
+            }
+        }
+    };
+    ($generics:tt $V:ty: $($Op:ident $op:ident $OpAssign:ident $op_assign:ident = $intrinsic:ident;)*) => {
+        $(operators!(@ $generics $V, $Op $op $OpAssign $op_assign $intrinsic);)*
+    };
+}
+use operators;
+
+/// `Debug` that lists the lanes.
+macro_rules! debug_lanes {
+    ($([$($generics:tt)*] $V:ty),*) => {$(
+        impl<$($generics)*> fmt::Debug for $V {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.to_block().0[..Self::LANES].fmt(f)
+            }
+        }
+        impl<$($generics)*> Sealed for $V {}
+    )*};
+}
+use debug_lanes;
+
+/// The bounds check of gathers: panics if the index of a lane that is on is not below `len`.
+#[inline(always)]
+fn check_bounds<V: Vector>(len: usize, index: V::Index, mask: V::Mask) {
+    let len = u32::try_from(len).unwrap_or(u32::MAX);
+    if (mask & V::Index::splat(len).le(index)).any() {
+        out_of_bounds(len);
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn out_of_bounds(len: u32) -> ! {
+    panic!("gather: an index is out of bounds of a slice of {len}");
+}
+
+/// Runs the kernel with the types of `isa`.
+///
+/// `isa` comes out of a [`Level`](crate::Level): this CPU has it.
+#[inline]
+pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
+    macro_rules! with_features {
+        ($features:literal, $S:ty) => {{
+            #[target_feature(enable = $features)]
+            fn run<K: Kernel>(kernel: K) -> K::Output {
+                kernel.run::<$S>()
+            }
+            // SAFETY: `isa` comes out of a `Level`, which exists only where detection found these features.
+            unsafe { run(kernel) }
+        }};
+    }
+    match isa {
+        Isa::Serial => serial::run(kernel),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Isa::Sse2 => with_features!("sse,sse2", sse::Sse2),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Isa::Sse42 => with_features!("sse3,ssse3,sse4.1,sse4.2,popcnt", sse::Sse42),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Isa::Avx2 => with_features!("avx2,fma,bmi1,bmi2,lzcnt,popcnt,f16c", avx2::Avx2),
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Isa::Avx512 => with_features!(
+            "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt,f16c",
+            avx512::Avx512
+        ),
+        #[cfg(target_arch = "aarch64")]
+        Isa::Neon => with_features!("neon", neon::Neon),
+        _ => scalar::run(kernel),
+    }
+}

@@ -1,0 +1,1 @@
+//! Functions computed from strict operations alone, and therefore the same bits on every level.

@@ -1,0 +1,20 @@
+//! The bounding volume hierarchy: a depth-first array of nodes with skip pointers.
+
+pub mod build;
+mod node;
+mod stats;
+
+pub use build::BuildConfig;
+pub use node::Node;
+pub use stats::BvhStats;
+
+use crate::geometry::Triangle;
+
+/// A tree over the triangles of a mesh. Node 0 is the root; empty when no triangle can be hit.
+#[derive(Debug, Clone)]
+pub struct Bvh {
+    /// Nodes, depth first.
+    pub nodes: Vec<Node>,
+    /// Triangles in the order of the leaves; degenerate ones left out.
+    pub triangles: Vec<Triangle>,
+}
