@@ -26,15 +26,8 @@ pub enum Isa {
 
 impl Isa {
     /// All of them, slowest first.
-    pub const ALL: [Self; 7] = [
-        Self::Serial,
-        Self::Scalar,
-        Self::Sse2,
-        Self::Sse42,
-        Self::Avx2,
-        Self::Avx512,
-        Self::Neon,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::Serial, Self::Scalar, Self::Sse2, Self::Sse42, Self::Avx2, Self::Avx512, Self::Neon];
 
     /// The name that [`Level::from_str`] and `SIMD_LEVEL` take.
     #[must_use]
@@ -71,8 +64,7 @@ impl Isa {
             Self::Sse2 => cpu_has!(is_x86_feature_detected: "sse" "sse2"),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Self::Sse42 => {
-                Self::Sse2.detected()
-                    && cpu_has!(is_x86_feature_detected: "sse3" "ssse3" "sse4.1" "sse4.2" "popcnt")
+                Self::Sse2.detected() && cpu_has!(is_x86_feature_detected: "sse3" "ssse3" "sse4.1" "sse4.2" "popcnt")
             }
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
             Self::Avx2 => {
@@ -86,10 +78,7 @@ impl Isa {
             }
             #[cfg(target_arch = "aarch64")]
             Self::Neon => cpu_has!(is_aarch64_feature_detected: "neon"),
-            #[allow(
-                unreachable_patterns,
-                reason = "reached by the levels of other architectures"
-            )]
+            #[allow(unreachable_patterns, reason = "reached by the levels of other architectures")]
             _ => false,
         }
     }
@@ -152,6 +141,13 @@ impl Level {
         }
     }
 
+    /// Runs `kernel` in plain Rust, as [`Level::SCALAR`] does, and compiles it for nothing else: for work whose speed does not
+    /// matter.
+    #[inline]
+    pub fn run_scalar<K: Kernel>(kernel: K) -> K::Output {
+        backend::scalar::run(kernel)
+    }
+
     /// Which instruction set it is.
     #[must_use]
     pub const fn isa(self) -> Isa {
@@ -198,11 +194,7 @@ impl fmt::Display for LevelError {
         let names = |levels: Vec<&str>| levels.join(", ");
         match self {
             Self::Unknown(name) => {
-                write!(
-                    f,
-                    "unknown level '{name}'; known: auto, {}",
-                    names(Isa::ALL.map(Isa::name).to_vec())
-                )
+                write!(f, "unknown level '{name}'; known: auto, {}", names(Isa::ALL.map(Isa::name).to_vec()))
             }
             Self::Unavailable(isa) => {
                 let here = Level::available().map(|l| l.0.name()).collect();

@@ -120,10 +120,7 @@ impl<V: Vector> Vector for Pair<V> {
     }
     #[inline(always)]
     fn load_block(block: &Block<V::Lane>, chunk: usize) -> Self {
-        Self(
-            V::load_block(block, 2 * chunk),
-            V::load_block(block, 2 * chunk + 1),
-        )
+        Self(V::load_block(block, 2 * chunk), V::load_block(block, 2 * chunk + 1))
     }
     #[inline(always)]
     fn store_block(self, block: &mut Block<V::Lane>, chunk: usize) {
@@ -136,21 +133,13 @@ impl<V: Vector> Vector for Pair<V> {
     }
     #[inline(always)]
     fn gather_masked(src: &[V::Lane], index: Self::Index, mask: Self::Mask, or: Self) -> Self {
-        Self(
-            V::gather_masked(src, index.0, mask.0, or.0),
-            V::gather_masked(src, index.1, mask.1, or.1),
-        )
+        Self(V::gather_masked(src, index.0, mask.0, or.0), V::gather_masked(src, index.1, mask.1, or.1))
     }
     #[inline(always)]
     fn load_rows4(rows: &[[V::Lane; 4]]) -> [Self; 4] {
         let rows = &rows[..Self::LANES];
         let (lo, hi) = (V::load_rows4(rows), V::load_rows4(&rows[V::LANES..]));
-        [
-            Self(lo[0], hi[0]),
-            Self(lo[1], hi[1]),
-            Self(lo[2], hi[2]),
-            Self(lo[3], hi[3]),
-        ]
+        [Self(lo[0], hi[0]), Self(lo[1], hi[1]), Self(lo[2], hi[2]), Self(lo[3], hi[3])]
     }
     #[inline(always)]
     fn store_rows4(columns: [Self; 4], rows: &mut [[V::Lane; 4]]) {
@@ -161,10 +150,7 @@ impl<V: Vector> Vector for Pair<V> {
     }
     #[inline(always)]
     fn select(mask: Self::Mask, on_true: Self, on_false: Self) -> Self {
-        Self(
-            V::select(mask.0, on_true.0, on_false.0),
-            V::select(mask.1, on_true.1, on_false.1),
-        )
+        Self(V::select(mask.0, on_true.0, on_false.0), V::select(mask.1, on_true.1, on_false.1))
     }
     #[inline(always)]
     fn eq(self, other: Self) -> Self::Mask {

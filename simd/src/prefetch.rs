@@ -4,11 +4,7 @@
 /// bounds or the architecture has no such instruction.
 #[inline(always)]
 pub fn prefetch<T>(slice: &[T], index: usize) {
-    #[cfg(any(
-        target_arch = "x86_64",
-        all(target_arch = "x86", target_feature = "sse"),
-        target_arch = "aarch64"
-    ))]
+    #[cfg(any(target_arch = "x86_64", all(target_arch = "x86", target_feature = "sse"), target_arch = "aarch64"))]
     if let Some(item) = slice.get(index) {
         let address = std::ptr::from_ref(item);
         #[cfg(target_arch = "x86")]

@@ -68,9 +68,7 @@ pub trait Simd: Sealed + Copy + Debug + Send + Sync + 'static {
 }
 
 /// The type of one lane: `f32`, `i32` or `u32`.
-pub trait Lane:
-    Sealed + Copy + Debug + Default + PartialEq + PartialOrd + Send + Sync + 'static
-{
+pub trait Lane: Sealed + Copy + Debug + Default + PartialEq + PartialOrd + Send + Sync + 'static {
     /// Not smaller than any other value (infinity for `f32`).
     const LARGEST: Self;
 }
@@ -172,12 +170,7 @@ pub trait Vector: Sealed + Copy + Debug + Send + Sync + 'static {
     /// If an index is out of bounds (one comparison for the whole vector).
     #[inline(always)]
     fn gather(src: &[Self::Lane], index: Self::Index) -> Self {
-        Self::gather_masked(
-            src,
-            index,
-            Self::Mask::splat(true),
-            Self::splat(Self::Lane::default()),
-        )
+        Self::gather_masked(src, index, Self::Mask::splat(true), Self::splat(Self::Lane::default()))
     }
 
     /// `src[index[i]]` where the mask is true, `or` elsewhere; indices of lanes that are off are not looked at.
@@ -332,6 +325,11 @@ pub trait Float:
     /// Sum of the lanes, added in the order of [`Vector::reduce_min`].
     fn reduce_add(self) -> f32;
 
+    /// `self`, negated where `sign` has its sign bit set.
+    #[inline(always)]
+    fn mul_sign(self, sign: Self) -> Self {
+        Self::from_bits(self.to_bits() ^ (sign.to_bits() & Self::Index::splat(1 << 31)))
+    }
     /// The smaller; the other one when one is NaN.
     #[inline(always)]
     fn min_num(self, other: Self) -> Self {

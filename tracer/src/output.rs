@@ -1,6 +1,7 @@
 //! Writing files so that a failure leaves nothing half done behind.
 
 use crate::Error;
+use crate::progress::Progress;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -56,6 +57,18 @@ impl Staged {
             },
         }
     }
+}
+
+/// To be called by a writer after item `i` of a list: reports progress now and then, and fails when the work is cancelled.
+pub(crate) fn step(progress: &dyn Progress, i: usize) -> io::Result<()> {
+    const STEP: usize = 1 << 14;
+    if i.is_multiple_of(STEP) {
+        progress.advance(if i == 0 { 0 } else { STEP as u64 });
+        if progress.cancelled() {
+            return Err(io::Error::other("cancelled"));
+        }
+    }
+    Ok(())
 }
 
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {

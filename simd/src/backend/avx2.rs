@@ -335,15 +335,11 @@ impl Float for Float8 {
     }
     #[inline(always)]
     fn trunc(self) -> Self {
-        Self::new(intrinsics!(_mm256_round_ps::<
-            { _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC },
-        >(self.0)))
+        Self::new(intrinsics!(_mm256_round_ps::<{ _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC }>(self.0)))
     }
     #[inline(always)]
     fn round(self) -> Self {
-        Self::new(intrinsics!(_mm256_round_ps::<
-            { _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC },
-        >(self.0)))
+        Self::new(intrinsics!(_mm256_round_ps::<{ _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC }>(self.0)))
     }
 
     #[inline(always)]

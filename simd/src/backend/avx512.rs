@@ -332,27 +332,19 @@ impl Float for Float16 {
     }
     #[inline(always)]
     fn floor(self) -> Self {
-        Self::new(intrinsics!(_mm512_roundscale_ps::<
-            { _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC },
-        >(self.0)))
+        Self::new(intrinsics!(_mm512_roundscale_ps::<{ _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC }>(self.0)))
     }
     #[inline(always)]
     fn ceil(self) -> Self {
-        Self::new(intrinsics!(_mm512_roundscale_ps::<
-            { _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC },
-        >(self.0)))
+        Self::new(intrinsics!(_mm512_roundscale_ps::<{ _MM_FROUND_TO_POS_INF | _MM_FROUND_NO_EXC }>(self.0)))
     }
     #[inline(always)]
     fn trunc(self) -> Self {
-        Self::new(intrinsics!(_mm512_roundscale_ps::<
-            { _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC },
-        >(self.0)))
+        Self::new(intrinsics!(_mm512_roundscale_ps::<{ _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC }>(self.0)))
     }
     #[inline(always)]
     fn round(self) -> Self {
-        Self::new(intrinsics!(_mm512_roundscale_ps::<
-            { _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC },
-        >(self.0)))
+        Self::new(intrinsics!(_mm512_roundscale_ps::<{ _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC }>(self.0)))
     }
 
     #[inline(always)]
@@ -380,10 +372,7 @@ impl Float for Float16 {
     #[inline(always)]
     fn to_uint(self) -> Uint16 {
         // Above the range the instruction gives u32::MAX; NaN and negative numbers are made 0 first.
-        Uint16::new(intrinsics!(_mm512_cvttps_epu32(_mm512_max_ps(
-            self.0,
-            _mm512_setzero_ps()
-        ))))
+        Uint16::new(intrinsics!(_mm512_cvttps_epu32(_mm512_max_ps(self.0, _mm512_setzero_ps()))))
     }
     #[inline(always)]
     fn from_int(x: Int16) -> Self {

@@ -158,19 +158,9 @@ impl Sealed for f32 {}
 impl Sealed for i32 {}
 impl Sealed for u32 {}
 impl<T> Sealed for Wrapping<T> {}
-lane!(
-    f32,
-    f32,
-    f32::INFINITY,
-    std::convert::identity,
-    std::convert::identity
-);
-lane!(i32, Wrapping<i32>, i32::MAX, Wrapping, |w: Wrapping<
-    i32,
->| w.0);
-lane!(u32, Wrapping<u32>, u32::MAX, Wrapping, |w: Wrapping<
-    u32,
->| w.0);
+lane!(f32, f32, f32::INFINITY, std::convert::identity, std::convert::identity);
+lane!(i32, Wrapping<i32>, i32::MAX, Wrapping, |w: Wrapping<i32>| w.0);
+lane!(u32, Wrapping<u32>, u32::MAX, Wrapping, |w: Wrapping<u32>| w.0);
 
 // ---- Floats ----
 

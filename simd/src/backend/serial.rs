@@ -12,21 +12,11 @@ use std::ops::*;
 /// Emulation in scalar instructions.
 #[derive(Debug, Clone, Copy)]
 pub struct Serial;
-scalar::emulation!(
-    Serial,
-    Fenced<f32>,
-    Fenced<Wrapping<i32>>,
-    Fenced<Wrapping<u32>>
-);
+scalar::emulation!(Serial, Fenced<f32>, Fenced<Wrapping<i32>>, Fenced<Wrapping<u32>>);
 
 /// Whether [`Fence::fence`] does anything on this architecture.
-pub(crate) const FENCED: bool = cfg!(any(
-    all(
-        any(target_arch = "x86", target_arch = "x86_64"),
-        target_feature = "sse2"
-    ),
-    target_arch = "aarch64"
-));
+pub(crate) const FENCED: bool =
+    cfg!(any(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"), target_arch = "aarch64"));
 
 /// A lane that can be hidden from the optimizer.
 pub trait Fence: Vector<Mask = bool, Index = Wrapping<u32>> {
@@ -215,6 +205,10 @@ impl<V: Fence + Float<Int = Wrapping<i32>>> Float for Fenced<V> {
     fenced! { V:
         abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round();
         mul_add(b, c); mul_sub(b, c); neg_mul_add(b, c);
+    }
+    #[inline(always)]
+    fn mul_sign(self, sign: Self) -> Self {
+        Self(self.0.mul_sign(sign.0).fence())
     }
     #[inline(always)]
     fn to_int(self) -> Self::Int {

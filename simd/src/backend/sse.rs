@@ -393,9 +393,7 @@ impl<I: Sse> Float for Float4<I> {
     #[inline(always)]
     fn trunc(self) -> Self {
         if const { I::SSE41 } {
-            Self::new(intrinsics!(_mm_round_ps::<
-                { _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC },
-            >(self.0)))
+            Self::new(intrinsics!(_mm_round_ps::<{ _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC }>(self.0)))
         } else {
             self.round_sse2(Self::trunc_sse2)
         }
@@ -403,9 +401,7 @@ impl<I: Sse> Float for Float4<I> {
     #[inline(always)]
     fn round(self) -> Self {
         if const { I::SSE41 } {
-            Self::new(intrinsics!(_mm_round_ps::<
-                { _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC },
-            >(self.0)))
+            Self::new(intrinsics!(_mm_round_ps::<{ _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC }>(self.0)))
         } else {
             // Adding 2^23 leaves no bit for a fraction: the addition itself rounds to even.
             let magic = Self::splat(8_388_608.0);
@@ -415,27 +411,15 @@ impl<I: Sse> Float for Float4<I> {
 
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
-        if const { I::FMA } {
-            Self::new(intrinsics!(_mm_fmadd_ps(self.0, b.0, c.0)))
-        } else {
-            self * b + c
-        }
+        if const { I::FMA } { Self::new(intrinsics!(_mm_fmadd_ps(self.0, b.0, c.0))) } else { self * b + c }
     }
     #[inline(always)]
     fn mul_sub(self, b: Self, c: Self) -> Self {
-        if const { I::FMA } {
-            Self::new(intrinsics!(_mm_fmsub_ps(self.0, b.0, c.0)))
-        } else {
-            self * b - c
-        }
+        if const { I::FMA } { Self::new(intrinsics!(_mm_fmsub_ps(self.0, b.0, c.0))) } else { self * b - c }
     }
     #[inline(always)]
     fn neg_mul_add(self, b: Self, c: Self) -> Self {
-        if const { I::FMA } {
-            Self::new(intrinsics!(_mm_fnmadd_ps(self.0, b.0, c.0)))
-        } else {
-            c - self * b
-        }
+        if const { I::FMA } { Self::new(intrinsics!(_mm_fnmadd_ps(self.0, b.0, c.0))) } else { c - self * b }
     }
 
     #[inline(always)]

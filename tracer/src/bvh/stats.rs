@@ -33,7 +33,7 @@ impl Bvh {
         let Some(root) = self.nodes.first() else { return BvhStats::default() };
         let mut leaves = 0;
         let mut max_depth = 0;
-        let mut cost = half_area(root);
+        let mut cost = root.bounds().half_area_f64();
         // Inner nodes above the current one: where each ends, and its area.
         let mut above: Vec<(usize, f64)> = Vec::new();
         for (i, node) in self.nodes.iter().enumerate() {
@@ -45,11 +45,11 @@ impl Bvh {
             }
             let (_, count) = node.triangles();
             if count == 0 {
-                above.push((node.skip() as usize, half_area(node)));
+                above.push((node.skip() as usize, node.bounds().half_area_f64()));
             } else {
                 leaves += 1;
                 max_depth = max_depth.max(above.len());
-                cost += f64::from(count) * half_area(node);
+                cost += f64::from(count) * node.bounds().half_area_f64();
             }
         }
         let bytes = nodes * size_of::<Node>() + triangles * size_of::<Triangle>();
@@ -60,7 +60,7 @@ impl Bvh {
             triangles,
             max_depth,
             mean_leaf: per(triangles as f64, leaves),
-            sah_cost: cost / half_area(root),
+            sah_cost: cost / root.bounds().half_area_f64(),
             bytes,
             bytes_per_triangle: per(bytes as f64, triangles),
         }
@@ -145,10 +145,4 @@ impl Bvh {
             None => Ok(()),
         }
     }
-}
-
-fn half_area(node: &Node) -> f64 {
-    let b = node.bounds();
-    let [x, y, z] = std::array::from_fn(|i| f64::from(b.max[i]) - f64::from(b.min[i]));
-    x * y + y * z + z * x
 }

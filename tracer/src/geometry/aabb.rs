@@ -41,6 +41,14 @@ impl Aabb {
         if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
     }
 
+    /// As [`Aabb::half_area`], without overflow and with the small differences between large boxes.
+    #[inline]
+    #[must_use]
+    pub fn half_area_f64(&self) -> f64 {
+        let [x, y, z] = std::array::from_fn(|i| f64::from(self.max[i]) - f64::from(self.min[i]));
+        if x < 0.0 { 0.0 } else { x * y + y * z + z * x }
+    }
+
     /// Edge lengths (negative when empty).
     #[inline]
     #[must_use]

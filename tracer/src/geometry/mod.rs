@@ -1,7 +1,16 @@
 //! Boxes, triangles and rays, and how they meet.
 
 mod aabb;
+mod hit;
+pub(crate) mod moller_trumbore;
+mod ray;
+pub(crate) mod slab;
 mod triangle;
+mod vec3;
 
 pub use aabb::Aabb;
+pub use hit::{Hit, HitBatch, HitBlock};
+pub(crate) use ray::Packet;
+pub use ray::{Ray, RayBatch, RayBlock};
 pub use triangle::Triangle;
+pub use vec3::Vec3;

@@ -39,6 +39,7 @@ impl Triangle {
 
     /// True when no ray can meaningfully hit it: its sides are parallel to within the precision of `f32`
     /// (|e1 x e2| <= 2^-23 |e1| |e2|), a side has no length, or an edge or the box overflows.
+    #[inline]
     #[must_use]
     pub fn is_degenerate(&self) -> bool {
         let [a, b] = [self.e1, self.e2].map(|e| e.map(f64::from));

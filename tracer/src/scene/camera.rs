@@ -22,7 +22,7 @@ pub struct Camera {
 /// Eye rays of an image: pixel (x, y), counted from the top left, is seen along `corner + x * dx + y * dy` (not of unit
 /// length) from `origin`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EyeRays {
+pub struct FrameVectors {
     /// Where all rays begin: the eye.
     pub origin: [f32; 3],
     /// Direction through the centre of pixel (0, 0).
@@ -92,15 +92,15 @@ impl Camera {
     /// Computed in `f64` and rounded once. An `up` along the view is replaced by another; a camera that fails
     /// [`Camera::validate`] otherwise, or an image without pixels, gives numbers without meaning.
     #[must_use]
-    pub fn eye_rays(&self, width: u32, height: u32) -> EyeRays {
+    pub fn frame_vectors(&self, width: usize, height: usize) -> FrameVectors {
         let forward = normalize(self.view());
         let right = self.side().unwrap_or_else(|| perpendicular(forward));
         let down = cross(forward, right);
-        let [w, h] = [width, height].map(f64::from);
+        let [w, h] = [width, height].map(|n| n as f64);
         let pixel = 2.0 * half_tan(self.fov) / h;
         let [dx, dy] = [right, down].map(|v| scale(v, pixel));
         let corner = sub(forward, add(scale(dx, 0.5 * (w - 1.0)), scale(dy, 0.5 * (h - 1.0))));
-        EyeRays { origin: self.eye, corner: narrow(corner), dx: narrow(dx), dy: narrow(dy) }
+        FrameVectors { origin: self.eye, corner: narrow(corner), dx: narrow(dx), dy: narrow(dy) }
     }
 
     fn view(&self) -> Vec3 {
@@ -228,22 +228,22 @@ mod tests {
 
     /// A camera at the origin looking down -z with a right angle: the picture's edges are at slope 1.
     #[test]
-    fn eye_rays_span_the_image() {
+    fn frame_vectors_span_the_image() {
         let c = Camera { eye: [0.0; 3], at: [0.0, 0.0, -7.0], up: [0.0, 3.0, 1.0], fov: 90.0 };
-        let r = c.eye_rays(4, 2);
+        let r = c.frame_vectors(4, 2);
         let at = |x: f32, y: f32| std::array::from_fn(|i| r.corner[i] + x * r.dx[i] + y * r.dy[i]);
         assert!(near(at(0.0, 0.0), [-1.5, 0.5, -1.0]), "centre of the top left pixel");
         assert!(near(at(3.0, 1.0), [1.5, -0.5, -1.0]), "centre of the bottom right pixel");
         assert!(near(at(1.5, 0.5), [0.0, 0.0, -1.0]), "the middle looks at `at`");
         assert!(near(at(-0.5, -0.5), [-2.0, 1.0, -1.0]), "the picture's corner");
         assert_eq!(r.origin, c.eye);
-        assert!(near(c.eye_rays(1, 1).corner, [0.0, 0.0, -1.0]));
+        assert!(near(c.frame_vectors(1, 1).corner, [0.0, 0.0, -1.0]));
     }
 
     #[test]
-    fn eye_rays_survive_an_up_along_the_view() {
+    fn frame_vectors_survive_an_up_along_the_view() {
         let c = Camera { eye: [0.0, 1.0, 0.0], at: [0.0; 3], up: [0.0, 1.0, 0.0], fov: 60.0 };
-        let r = c.eye_rays(8, 8);
+        let r = c.frame_vectors(8, 8);
         assert!([r.corner, r.dx, r.dy].iter().flatten().all(|x| x.is_finite()));
         assert!(dot(wide(r.dx), wide(r.dy)).abs() < 1e-9 && r.dx != [0.0; 3]);
     }

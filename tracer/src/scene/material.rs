@@ -14,3 +14,11 @@ pub struct Material {
     /// Ns, the highlight's exponent.
     pub shininess: f32,
 }
+
+impl Material {
+    /// What surfaces look like about which nothing is said: light grey, without highlight.
+    #[must_use]
+    pub fn grey(name: &str) -> Self {
+        Self { name: name.into(), ambient: [0.0; 3], diffuse: [0.7; 3], specular: [0.0; 3], shininess: 10.0 }
+    }
+}

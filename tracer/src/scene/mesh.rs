@@ -87,7 +87,9 @@ impl Mesh {
 /// Every index is below `len`, unless the whole triple is `except`.
 fn in_range(what: &str, triples: &[[u32; 3]], len: usize, except: Option<[u32; 3]>) -> Result<(), Error> {
     let bad = |t: &[u32; 3]| t.iter().any(|&v| v as usize >= len) && Some(*t) != except;
-    let Some(i) = triples.iter().position(bad) else { return Ok(()) };
+    let Some(i) = triples.iter().position(bad) else {
+        return Ok(());
+    };
     let index = triples[i].into_iter().find(|&v| v as usize >= len).unwrap_or_default();
     geometry(format!(
         "triangle {i} uses {what} {index}, but there are {len} (counted from 0): correct the index or remove the triangle"

@@ -1,18 +1,29 @@
-//! Bins along the three axes, and the cheapest plane between two of them.
+//! Primitives sorted into bins along all three axes, and moved to the two sides of a plane between bins.
 
-use super::primitive::{Box4, Primitive};
+use super::primitive::{Box4, Primitive, centers};
+use super::sah::{Best, Split};
+use rayon::prelude::*;
 
-pub(super) const BINS: usize = 16;
+/// Measured on balls: 32 bins take 10 % longer for a tree 0.1 % better, 8 save 4 % for one 0.3 % worse.
+const BINS: usize = 16;
+
+/// Larger ranges of primitives are worked on in pieces of this size, in parallel. Constant, so that the result is the same for any
+/// number of threads.
+pub(super) const PIECE: usize = 8192;
 
 /// Maps centers to bins.
-pub(super) struct Grid {
+struct Grid {
     origin: [f32; 4],
     scale: [f32; 4],
 }
 
 impl Grid {
-    /// Equal bins over the box of all centers.
-    pub(super) fn new(centers: &Box4) -> Self {
+    /// Added to the place of a center, in units of bins, gives a float whose lowest 8 bits are the fraction: this rounds down
+    /// faster than the saturating `as`.
+    const SHIFT: f32 = 32768.0;
+
+    /// Equal bins over the box of all centers. Where that has no size, or not a finite one, all centers fall into bin 0.
+    fn new(centers: &Box4) -> Self {
         // A little less than BINS, so that the upper border falls into the last bin.
         let scale = std::array::from_fn(|i| {
             let s = (BINS as f32 - 1.0 / 64.0) / (centers.max[i] - centers.min[i]);
@@ -21,51 +32,45 @@ impl Grid {
         Self { origin: centers.min, scale }
     }
 
-    /// The bin of a center along each axis (the fourth lane means nothing).
     #[inline(always)]
-    pub(super) fn bins(&self, center: [f32; 4]) -> [usize; 4] {
-        // In a float near 2^15 the lowest 8 bits are the fraction: a conversion to an integer that vectorizes on every target.
-        center_to(center, self).map(|x| ((x + 32768.0).to_bits() >> 8) as usize % BINS)
+    fn shifted(&self, axis: usize, p: &Primitive) -> f32 {
+        (p.center(axis) - self.origin[axis]) * self.scale[axis] + Self::SHIFT
+    }
+
+    #[inline(always)]
+    fn bin(&self, axis: usize, p: &Primitive) -> usize {
+        (self.shifted(axis, p).to_bits() >> 8) as usize % BINS
+    }
+
+    /// Whether the primitive's bin is below the plane.
+    #[inline(always)]
+    fn is_below(&self, split: &Split, p: &Primitive) -> bool {
+        self.shifted(split.axis, p) < split.below as f32 + Self::SHIFT
     }
 }
 
-#[inline(always)]
-fn center_to(center: [f32; 4], grid: &Grid) -> [f32; 4] {
-    std::array::from_fn(|i| (center[i] - grid.origin[i]) * grid.scale[i])
-}
-
 /// Number and box of the primitives in each bin of each axis.
-#[derive(Clone)]
-pub(super) struct Bins {
+struct Bins {
     boxes: [[Box4; BINS]; 3],
     counts: [[u32; BINS]; 3],
 }
 
-/// A plane between two bins.
-pub(super) struct Split {
-    pub(super) axis: usize,
-    /// The first bin above the plane.
-    pub(super) bin: usize,
-    /// Sum over both sides of half the area times the number of primitives.
-    pub(super) cost: f32,
-}
-
 impl Bins {
-    pub(super) const EMPTY: Self = Self { boxes: [[Box4::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
+    const EMPTY: Self = Self { boxes: [[Box4::EMPTY; BINS]; 3], counts: [[0; BINS]; 3] };
 
-    #[inline(always)]
-    pub(super) fn add(&mut self, primitives: &[Primitive], grid: &Grid) {
+    // A function of its own, for then the loop keeps all it needs in registers.
+    #[inline(never)]
+    fn add(&mut self, primitives: &[Primitive], grid: &Grid) {
         for p in primitives {
-            let bins = grid.bins(p.center());
             for axis in 0..3 {
-                let bin = bins[axis];
+                let bin = grid.bin(axis, p);
                 self.boxes[axis][bin] = self.boxes[axis][bin].union(&p.0);
                 self.counts[axis][bin] += 1;
             }
         }
     }
 
-    pub(super) fn merge(&mut self, other: &Self) {
+    fn merge(&mut self, other: &Self) {
         for axis in 0..3 {
             for bin in 0..BINS {
                 self.boxes[axis][bin] = self.boxes[axis][bin].union(&other.boxes[axis][bin]);
@@ -74,38 +79,96 @@ impl Bins {
         }
     }
 
-    /// The split of least cost, if any plane has primitives on both sides.
-    pub(super) fn best(&self) -> Option<Split> {
-        // Without branches, which would be mispredicted: an empty side costs inf * 0 = NaN, and the bits of NaN are larger than those of all numbers here.
-        let mut above = [[0.0; BINS]; 3];
-        let (mut boxes, mut counts) = ([Box4::EMPTY; 3], [0; 3]);
-        for bin in (1..BINS).rev() {
-            for axis in 0..3 {
-                boxes[axis] = boxes[axis].union(&self.boxes[axis][bin]);
-                counts[axis] += self.counts[axis][bin];
-                above[axis][bin] = boxes[axis].half_area() * counts[axis] as f32;
-            }
+    /// Number of primitives below the plane.
+    fn count_below(&self, split: &Split) -> usize {
+        self.counts[split.axis][..split.below].iter().sum::<u32>() as usize
+    }
+}
+
+/// A range of primitives in bins.
+pub(super) struct Binning {
+    grid: Grid,
+    all: Bins,
+    /// Of each piece, when there are several.
+    pieces: Vec<Bins>,
+}
+
+impl Binning {
+    pub(super) fn new(primitives: &[Primitive]) -> Self {
+        if primitives.len() <= PIECE {
+            let grid = Grid::new(&centers(primitives));
+            let mut all = Bins::EMPTY;
+            all.add(primitives, &grid);
+            return Self { grid, all, pieces: Vec::new() };
         }
-        let (mut boxes, mut counts) = ([Box4::EMPTY; 3], [0; 3]);
-        let mut best = u64::from(f32::INFINITY.to_bits()) << 32;
-        for bin in 1..BINS {
-            for axis in 0..3 {
-                boxes[axis] = boxes[axis].union(&self.boxes[axis][bin - 1]);
-                counts[axis] += self.counts[axis][bin - 1];
-                let cost = boxes[axis].half_area() * counts[axis] as f32 + above[axis][bin];
-                best = best.min(u64::from(cost.to_bits()) << 32 | (axis * BINS + bin) as u64);
-            }
-        }
-        let (cost, at) = (f32::from_bits((best >> 32) as u32), best as u32 as usize);
-        (at > 0).then_some(Split { axis: at / BINS, bin: at % BINS, cost })
+        let pieces = primitives.par_chunks(PIECE);
+        let grid = Grid::new(&pieces.clone().map(centers).reduce(|| Box4::EMPTY, |a, b| a.union(&b)));
+        let binned = |piece| {
+            let mut bins = Bins::EMPTY;
+            bins.add(piece, &grid);
+            bins
+        };
+        let pieces: Vec<_> = pieces.map(binned).collect();
+        let mut all = Bins::EMPTY;
+        pieces.iter().for_each(|p| all.merge(p));
+        Self { grid, all, pieces }
     }
 
-    /// Number and box of the primitives below and above the plane.
-    pub(super) fn sides(&self, split: &Split) -> [(usize, Box4); 2] {
-        let (boxes, counts) = (&self.boxes[split.axis], &self.counts[split.axis]);
-        [0..split.bin, split.bin..BINS].map(|side| {
-            let count = counts[side.clone()].iter().sum::<u32>();
-            (count as usize, boxes[side].iter().fold(Box4::EMPTY, |a, b| a.union(b)))
-        })
+    /// The cheapest split, if any plane has primitives on both sides.
+    pub(super) fn best(&self) -> Option<Split> {
+        let mut best = Best::new();
+        for axis in 0..3 {
+            best.consider(axis, &self.all.boxes[axis], &self.all.counts[axis], BINS);
+        }
+        best.split()
+    }
+
+    /// Number of primitives below the plane.
+    pub(super) fn count_below(&self, split: &Split) -> usize {
+        self.all.count_below(split)
+    }
+
+    /// Boxes of the primitives below and above the plane.
+    pub(super) fn sides(&self, split: &Split) -> [Box4; 2] {
+        let (below, above) = self.all.boxes[split.axis].split_at(split.below);
+        [below, above].map(|side| side.iter().fold(Box4::EMPTY, |a, b| a.union(b)))
+    }
+
+    /// Moves each primitive to its side of the plane.
+    pub(super) fn scatter(
+        &self,
+        split: &Split,
+        src: &[Primitive],
+        mut below: &mut [Primitive],
+        mut above: &mut [Primitive],
+    ) {
+        if self.pieces.is_empty() {
+            return scatter(&self.grid, split, src, below, above);
+        }
+        let mut pieces = Vec::with_capacity(self.pieces.len());
+        for (src, bins) in src.chunks(PIECE).zip(&self.pieces) {
+            let n = bins.count_below(split);
+            let sides = (below.split_off_mut(..n), above.split_off_mut(..src.len() - n));
+            pieces.push((src, sides.0.unwrap_or_default(), sides.1.unwrap_or_default()));
+        }
+        pieces.into_par_iter().for_each(|(src, below, above)| scatter(&self.grid, split, src, below, above));
+    }
+}
+
+/// As [`Binning::scatter`], by one thread.
+#[inline(never)]
+fn scatter(grid: &Grid, split: &Split, src: &[Primitive], below: &mut [Primitive], above: &mut [Primitive]) {
+    let (mut b, mut a) = (0, 0);
+    for p in src {
+        // Writing to both and keeping one needs no branch, which would be mispredicted half of the time.
+        if let Some(to) = below.get_mut(b) {
+            *to = *p;
+        }
+        if let Some(to) = above.get_mut(a) {
+            *to = *p;
+        }
+        let is_below = grid.is_below(split, p);
+        b += usize::from(is_below);
+        a += usize::from(!is_below);
     }
 }

@@ -4,13 +4,14 @@ pub mod binned;
 mod bins;
 pub mod insertion;
 mod primitive;
+mod sah;
 mod sweep;
 
 use super::{Bvh, Node};
+use crate::Error;
 use crate::geometry::Triangle;
 use crate::progress::Progress;
 use crate::scene::Mesh;
-use crate::Error;
 use rayon::prelude::*;
 
 /// Which builder makes the tree, and its knobs.
@@ -50,13 +51,10 @@ impl Bvh {
     /// `"build"`, in triangles.
     ///
     /// # Errors
-    /// [`Error::Geometry`] for an index without a position or more than [`Node::MAX_TRIANGLES`] triangles,
-    /// [`Error::Cancelled`] when `progress` says so.
+    /// [`Error::Geometry`] as [`Mesh::validate`] has it, [`Error::Cancelled`] when `progress` says so.
     pub fn build(mesh: &Mesh, config: &BuildConfig, progress: &dyn Progress) -> Result<Self, Error> {
+        mesh.validate()?;
         let total = mesh.triangles.len();
-        if total > Node::MAX_TRIANGLES {
-            return Err(Error::Geometry(format!("{total} triangles are more than a tree can hold ({})", Node::MAX_TRIANGLES)));
-        }
         progress.stage("build", total as u64);
         progress.check()?;
         let primitives = primitive::primitives(mesh);
@@ -76,6 +74,5 @@ impl Bvh {
 #[inline]
 fn triangle(mesh: &Mesh, id: u32) -> Triangle {
     let i = id as usize;
-    let vertices = mesh.triangles[i].map(|v| mesh.positions[v as usize]);
-    Triangle::new(vertices, id, mesh.materials.get(i).copied().unwrap_or(0))
+    Triangle::new(mesh.triangle(i), id, mesh.material(i))
 }

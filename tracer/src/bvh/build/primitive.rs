@@ -26,11 +26,6 @@ impl Box4 {
         }
     }
 
-    #[inline(always)]
-    pub(super) fn grow(&mut self, p: [f32; 4]) {
-        *self = self.union(&Self { min: p, max: p });
-    }
-
     /// As [`Aabb::half_area`], but infinite for an empty box.
     #[inline(always)]
     pub(super) fn half_area(&self) -> f32 {
@@ -62,20 +57,36 @@ impl Primitive {
         self.0.min[3].to_bits() - Self::TAG
     }
 
-    /// Half the middle of the box, so that not even the difference of two of them overflows.
+    /// Twice the middle of the box along an axis.
     #[inline(always)]
-    pub(super) fn center(&self) -> [f32; 4] {
-        std::array::from_fn(|i| 0.25 * self.0.min[i] + 0.25 * self.0.max[i])
+    pub(super) fn center(&self, axis: usize) -> f32 {
+        self.0.min[axis] + self.0.max[axis]
     }
+}
+
+/// The box around all.
+pub(super) fn union(primitives: &[Primitive]) -> Box4 {
+    primitives.iter().fold(Box4::EMPTY, |b, p| b.union(&p.0))
+}
+
+/// The box of the centers.
+pub(super) fn centers(primitives: &[Primitive]) -> Box4 {
+    primitives.iter().fold(Box4::EMPTY, |b, p| {
+        let center = std::array::from_fn(|i| p.0.min[i] + p.0.max[i]);
+        b.union(&Box4 { min: center, max: center })
+    })
 }
 
 /// All triangles that are not degenerate, in the order of the mesh.
 pub(super) fn primitives(mesh: &Mesh) -> Vec<Primitive> {
-    (0..mesh.triangles.len() as u32)
+    // Marks degenerate ones first and removes them then, since only a parallel iterator of known length writes in place.
+    let mut all: Vec<Primitive> = (0..mesh.triangles.len() as u32)
         .into_par_iter()
-        .filter_map(|id| {
+        .map(|id| {
             let t = triangle(mesh, id);
-            (!t.is_degenerate()).then(|| Primitive::new(&t.bounds(), id))
+            Primitive::new(&if t.is_degenerate() { Aabb::EMPTY } else { t.bounds() }, id)
         })
-        .collect()
+        .collect();
+    all.retain(|p| p.0.min[0] != f32::INFINITY);
+    all
 }

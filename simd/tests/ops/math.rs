@@ -1,0 +1,10 @@
+//! Computed functions: the same bits everywhere as with one lane. How accurate they are is tested in `tests/math.rs`.
+
+use simd::{Float, Vector, math};
+
+operations! {
+    exp2(x: float) -> float { math::exp2(x) } is { math::exp2(x) }
+    log2(x: float) -> float { math::log2(x) } is { math::log2(x) }
+    pow(x: float, y: float) -> float { math::pow(x, y) } is { math::pow(x, y) }
+    pow_of_positive(x: float, y: float) -> float { math::pow(x.abs(), y) } is { math::pow(x.abs(), y) }
+}

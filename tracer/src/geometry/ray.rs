@@ -1,0 +1,249 @@
+//! Rays: one, a batch in structure-of-arrays blocks, and a packet as kernels see it.
+
+use super::Vec3;
+use simd::{Block, Float};
+
+/// A ray and the interval of it that counts, both ends included. `t` is in units of the direction's length, which need not be 1.
+///
+/// What unusual numbers mean, on every level alike:
+/// - a direction component below `f32::MIN_POSITIVE` in magnitude (zero, denormal) is zero of its sign;
+/// - `t_min` below 0 is 0; an empty interval hits nothing; `t_max` may be infinite;
+/// - a ray hits nothing if its origin or direction has a NaN or infinite component, if all of its direction is zero, or if
+///   an end of the interval is NaN.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
+pub struct Ray {
+    /// Origin.
+    pub org: [f32; 3],
+    /// Smallest `t` that counts.
+    pub t_min: f32,
+    /// Direction, of any length.
+    pub dir: [f32; 3],
+    /// Largest `t` that counts.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// All of the ray from `t = 0` on.
+    #[must_use]
+    pub const fn new(org: [f32; 3], dir: [f32; 3]) -> Self {
+        Self { org, t_min: 0.0, dir, t_max: f32::INFINITY }
+    }
+
+    /// A ray that hits nothing: fills the last block of a batch.
+    const NONE: Self = Self { org: [0.0; 3], t_min: f32::INFINITY, dir: [1.0; 3], t_max: f32::NEG_INFINITY };
+}
+
+/// Sixteen rays.
+#[derive(Debug, Clone)]
+#[repr(C)]
+pub struct RayBlock {
+    /// Origins, by coordinate.
+    pub org: [Block<f32>; 3],
+    /// Directions, by coordinate.
+    pub dir: [Block<f32>; 3],
+    /// Interval starts.
+    pub t_min: Block<f32>,
+    /// Interval ends.
+    pub t_max: Block<f32>,
+}
+
+impl RayBlock {
+    /// Sixteen rays that hit nothing.
+    pub const NONE: Self = Self {
+        org: [Block([Ray::NONE.org[0]; 16]); 3],
+        dir: [Block([Ray::NONE.dir[0]; 16]); 3],
+        t_min: Block([Ray::NONE.t_min; 16]),
+        t_max: Block([Ray::NONE.t_max; 16]),
+    };
+}
+
+/// Any number of rays in blocks of sixteen, structure of arrays.
+///
+/// It remembers whether all rays start at one point, as eye rays and shadow rays to a point light do: methods use that.
+#[derive(Debug, Clone, Default)]
+pub struct RayBatch {
+    blocks: Vec<RayBlock>,
+    len: usize,
+    origin: Option<[f32; 3]>,
+}
+
+impl RayBatch {
+    /// No rays.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { blocks: Vec::new(), len: 0, origin: None }
+    }
+
+    /// Number of rays.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// True when there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The point where all rays start, if it is one and the same.
+    #[must_use]
+    pub const fn origin(&self) -> Option<[f32; 3]> {
+        self.origin
+    }
+
+    /// The rays, sixteen at a time; the last block is filled with rays that hit nothing.
+    #[must_use]
+    pub fn blocks(&self) -> &[RayBlock] {
+        &self.blocks
+    }
+
+    /// Appends a ray.
+    pub fn push(&mut self, ray: Ray) {
+        let lane = self.len % 16;
+        if lane == 0 {
+            self.blocks.push(RayBlock::NONE);
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            for axis in 0..3 {
+                block.org[axis].0[lane] = ray.org[axis];
+                block.dir[axis].0[lane] = ray.dir[axis];
+            }
+            block.t_min.0[lane] = ray.t_min;
+            block.t_max.0[lane] = ray.t_max;
+        }
+        let same = |o: [f32; 3]| o.map(f32::to_bits) == ray.org.map(f32::to_bits);
+        self.origin = if self.len == 0 { Some(ray.org) } else { self.origin.filter(|&o| same(o)) };
+        self.len += 1;
+    }
+
+    /// Ray number `i`.
+    ///
+    /// # Panics
+    /// If `i >= len()`.
+    #[must_use]
+    pub fn get(&self, i: usize) -> Ray {
+        assert!(i < self.len, "ray {i} of {}", self.len);
+        let (block, lane) = (&self.blocks[i / 16], i % 16);
+        Ray {
+            org: std::array::from_fn(|axis| block.org[axis].0[lane]),
+            t_min: block.t_min.0[lane],
+            dir: std::array::from_fn(|axis| block.dir[axis].0[lane]),
+            t_max: block.t_max.0[lane],
+        }
+    }
+
+    /// The rays in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = Ray> + '_ {
+        (0..self.len).map(|i| self.get(i))
+    }
+
+    /// A batch of `len` rays from one point, whose blocks `fill` will write: the number of the block and the block.
+    ///
+    /// `fill` sets directions and intervals; origins are set already. Lanes past `len` are turned off afterwards.
+    pub(crate) fn from_origin(origin: [f32; 3], len: usize, fill: impl FnOnce(&mut [RayBlock])) -> Self {
+        let mut block = RayBlock::NONE;
+        block.org = origin.map(|x| Block([x; 16]));
+        let mut blocks = vec![block; len.div_ceil(16)];
+        fill(&mut blocks);
+        if let Some(last) = blocks.last_mut() {
+            for lane in (len - 1) % 16 + 1..16 {
+                last.t_min.0[lane] = Ray::NONE.t_min;
+                last.t_max.0[lane] = Ray::NONE.t_max;
+            }
+        }
+        Self { blocks, len, origin: (len > 0).then_some(origin) }
+    }
+}
+
+impl FromIterator<Ray> for RayBatch {
+    fn from_iter<I: IntoIterator<Item = Ray>>(rays: I) -> Self {
+        let mut batch = Self::new();
+        batch.extend(rays);
+        batch
+    }
+}
+
+impl Extend<Ray> for RayBatch {
+    fn extend<I: IntoIterator<Item = Ray>>(&mut self, rays: I) {
+        rays.into_iter().for_each(|ray| self.push(ray));
+    }
+}
+
+/// A ray per lane, made ready for traversal: cleaned as [`Ray`] says, with reciprocals.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Packet<F: Float> {
+    pub(crate) org: Vec3<F>,
+    pub(crate) dir: Vec3<F>,
+    /// 1 / direction, finite: zero components count as the smallest normal number of their sign.
+    pub(crate) inv_dir: Vec3<F>,
+    /// [`Packet::inv_dir`] times [`Packet::PAD`], for the far ends of intervals.
+    pub(crate) inv_dir_far: Vec3<F>,
+    pub(crate) t_min: F,
+    pub(crate) t_max: F,
+    /// Lanes whose ray can hit something.
+    pub(crate) valid: F::Mask,
+}
+
+impl<F: Float> Packet<F> {
+    /// At least 1 + 2 gamma(3): what the far end of a slab interval must be padded by so that rounding cannot make a ray miss
+    /// a box it meets (Ize 2013, section 3.3); 4 ulp, one of them for the rounding of [`Packet::inv_dir_far`].
+    pub(crate) const PAD: f32 = 1.0 + 4.0 * f32::EPSILON;
+
+    /// Lanes `chunk * LANES ..` of a block.
+    #[inline(always)]
+    pub(crate) fn load(block: &RayBlock, chunk: usize) -> Self {
+        let (org, dir) = (Vec3::load(&block.org, chunk), Vec3::<F>::load(&block.dir, chunk));
+        let (t_min, t_max) = (F::load_block(&block.t_min, chunk), F::load_block(&block.t_max, chunk));
+        let zero = F::splat(0.0);
+
+        let dir = Vec3 { x: flush(dir.x), y: flush(dir.y), z: flush(dir.z) };
+        let moves = dir.x.ne(zero) | dir.y.ne(zero) | dir.z.ne(zero);
+        let valid = finite(org) & finite(dir) & moves & t_min.le(t_max);
+
+        let dir = Vec3::select(valid, dir, Vec3::splat(Ray::NONE.dir));
+        let inv_dir = Vec3 { x: reciprocal(dir.x), y: reciprocal(dir.y), z: reciprocal(dir.z) };
+        Self {
+            org: Vec3::select(valid, org, Vec3::splat(Ray::NONE.org)),
+            dir,
+            inv_dir,
+            inv_dir_far: inv_dir.scale(F::splat(Self::PAD)),
+            t_min: F::select(valid, t_min.max(zero), F::splat(Ray::NONE.t_min)),
+            t_max: F::select(valid, t_max, F::splat(Ray::NONE.t_max)),
+            valid,
+        }
+    }
+
+    /// Signs of the directions: per axis, which lanes are negative.
+    #[inline(always)]
+    pub(crate) fn signs(&self) -> [F::Mask; 3] {
+        let zero = F::splat(0.0);
+        [self.inv_dir.x.lt(zero), self.inv_dir.y.lt(zero), self.inv_dir.z.lt(zero)]
+    }
+
+    /// The packet with only the lanes of `mask` on.
+    #[inline(always)]
+    pub(crate) fn only(&self, mask: F::Mask) -> Self {
+        Self { t_min: F::select(mask, self.t_min, F::splat(Ray::NONE.t_min)), ..*self }
+    }
+}
+
+/// Zero of the same sign for what is below the smallest normal number.
+#[inline(always)]
+fn flush<F: Float>(d: F) -> F {
+    F::select(d.abs().lt(F::splat(f32::MIN_POSITIVE)), F::splat(0.0).copysign(d), d)
+}
+
+#[inline(always)]
+fn finite<F: Float>(v: Vec3<F>) -> F::Mask {
+    let infinity = F::splat(f32::INFINITY);
+    v.x.abs().lt(infinity) & v.y.abs().lt(infinity) & v.z.abs().lt(infinity)
+}
+
+/// 1 / d, with the smallest normal number in place of zero: 0 * inf never appears in a box test.
+#[inline(always)]
+fn reciprocal<F: Float>(d: F) -> F {
+    let tiny = F::splat(f32::MIN_POSITIVE).copysign(d);
+    F::splat(1.0) / F::select(d.eq(F::splat(0.0)), tiny, d)
+}

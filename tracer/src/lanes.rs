@@ -1,0 +1,104 @@
+//! Work written once for every vector width, and the choice of one.
+
+use simd::{Float, Kernel, Level, Simd};
+use std::fmt;
+use std::str::FromStr;
+
+/// Rays per packet; pixels that are worked on at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Width {
+    /// A single ray, in `f32`.
+    One,
+    /// Four: the paper's.
+    Four,
+    /// Eight.
+    Eight,
+    /// Sixteen.
+    Sixteen,
+    /// What is fastest at the level.
+    #[default]
+    Auto,
+}
+
+impl Width {
+    /// The number of rays at this level.
+    #[must_use]
+    pub fn lanes(self, level: Level) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Four => 4,
+            Self::Eight => 8,
+            Self::Sixteen => 16,
+            Self::Auto => level.isa().lanes(),
+        }
+    }
+}
+
+impl FromStr for Width {
+    type Err = String;
+    fn from_str(s: &str) -> Result<Self, String> {
+        match s {
+            "1" => Ok(Self::One),
+            "4" => Ok(Self::Four),
+            "8" => Ok(Self::Eight),
+            "16" => Ok(Self::Sixteen),
+            "auto" => Ok(Self::Auto),
+            _ => Err(format!("unknown width '{s}'; known: auto, 1, 4, 8, 16")),
+        }
+    }
+}
+
+impl fmt::Display for Width {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::One => "1",
+            Self::Four => "4",
+            Self::Eight => "8",
+            Self::Sixteen => "16",
+            Self::Auto => "auto",
+        })
+    }
+}
+
+/// Work that is generic over the vector type alone.
+pub(crate) trait Lanes {
+    type Output;
+
+    /// With vectors of type `F`. Mark it `#[inline(always)]`.
+    fn run<F: Float>(self) -> Self::Output;
+}
+
+/// Numbers of the blocks and of their chunks, for vectors of type `F`. One loop instead of two, which would be unrolled.
+#[inline(always)]
+pub(crate) fn chunks<F: Float>(blocks: usize) -> impl Iterator<Item = (usize, usize)> {
+    let per_block = 16 / F::LANES;
+    (0..blocks * per_block).map(move |i| (i / per_block, i % per_block))
+}
+
+/// Runs `job` at a level with vectors of `lanes` lanes: 1 (plain `f32`, whatever the level), 4, 8 or 16.
+pub(crate) fn run<J: Lanes>(level: Level, lanes: usize, job: J) -> J::Output {
+    if lanes == 1 { job.run::<f32>() } else { level.run(AtWidth { lanes, job }) }
+}
+
+/// [`run`] in plain Rust, compiled for no other level.
+pub(crate) fn run_scalar<J: Lanes>(lanes: usize, job: J) -> J::Output {
+    if lanes == 1 { job.run::<f32>() } else { Level::run_scalar(AtWidth { lanes, job }) }
+}
+
+struct AtWidth<J> {
+    lanes: usize,
+    job: J,
+}
+
+impl<J: Lanes> Kernel for AtWidth<J> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> J::Output {
+        match self.lanes {
+            4 => self.job.run::<S::Float4>(),
+            8 => self.job.run::<S::Float8>(),
+            _ => self.job.run::<S::Float16>(),
+        }
+    }
+}
