@@ -54,6 +54,7 @@ impl Isa {
     }
 
     fn detected(self) -> bool {
+        #[allow(unused_macros, reason = "there are architectures with emulation only")]
         macro_rules! cpu_has {
             ($detect:ident: $($feature:tt)*) => { $(std::arch::$detect!($feature))&&* };
         }

@@ -8,6 +8,11 @@
 //! type runs on a CPU that has its instructions. That is the argument of [`intrinsics!`]; memory is touched only through
 //! references whose length was checked on the line above.
 
+#![cfg_attr(
+    not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
+    allow(unused, reason = "what backends of registers share; there is only emulation here")
+)]
+
 pub(crate) mod scalar;
 pub(crate) mod serial;
 

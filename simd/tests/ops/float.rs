@@ -1,6 +1,6 @@
 //! Floats, lane by lane.
 
-use simd::{Float, Vector};
+use simd::Float;
 
 operations! {
     add(a: float, b: float) -> float { a + b } is { a + b }

@@ -46,30 +46,31 @@ macro_rules! at_width {
     };
 }
 
-/// An operation on columns of bit patterns, a kernel.
-pub type Run = fn(Level, Width, &[Vec<u32>], &mut [u32]);
+/// Up to three arguments of an operation, a vector of bit patterns each. Narrow vectors are the first lanes.
+pub type Arguments = [[u32; 16]; 3];
 
 /// Runs the operation everywhere on all inputs and compares every lane with what is expected of (fused, its arguments).
-pub fn check(arity: usize, run: Run, same: fn(u32, u32) -> bool, expected: &dyn Fn(bool, &[u32]) -> u32) {
-    let columns = values::columns(arity);
-    let row = |i: usize| columns.iter().map(|column| column[i]).collect::<Vec<_>>();
-    let rows = columns[0].len();
-    let of_all = |fused| (0..rows).map(|i| expected(fused, &row(i))).collect::<Vec<_>>();
+pub fn check(
+    arity: usize,
+    run: &dyn Fn(Level, Width, &Arguments, &mut [u32; 16]),
+    same: fn(u32, u32) -> bool,
+    expected: &dyn Fn(bool, [u32; 3]) -> u32,
+) {
+    let rows = values::rows(arity);
+    let of_all = |fused| rows.iter().map(|&row| expected(fused, row)).collect::<Vec<_>>();
     let expected = [of_all(false), of_all(true)];
     for (level, width) in everywhere() {
-        // Whatever an operation leaves unwritten will not pass for its result.
-        let mut out: Vec<u32> = (0..rows as u32).map(|i| i.wrapping_mul(0x9e37_79b9)).collect();
-        run(level, width, &columns, &mut out);
-        let expected = &expected[usize::from(fused(level, width))];
-        if let Some(i) = (0..rows).find(|&i| !same(out[i], expected[i])) {
-            let (got, want, lanes) = (out[i], expected[i], width.lanes());
-            panic!(
-                "{level}, {lanes} lanes, lane {}: of {} got {}, expected {}",
-                i % lanes,
-                row(i).into_iter().map(readings).collect::<Vec<_>>().join(" and "),
-                readings(got),
-                readings(want)
-            );
+        let (lanes, expected) = (width.lanes(), &expected[usize::from(fused(level, width))]);
+        for (rows, expected) in rows.chunks_exact(lanes).zip(expected.chunks_exact(lanes)) {
+            let arguments = std::array::from_fn(|k| std::array::from_fn(|lane| rows[lane % lanes][k]));
+            // Whatever an operation leaves unwritten will not pass for its result.
+            let mut out = [0xdead_beef; 16];
+            run(level, width, &arguments, &mut out);
+            if let Some(i) = (0..lanes).find(|&i| !same(out[i], expected[i])) {
+                let of = rows[i][..arity].iter().map(|&x| readings(x)).collect::<Vec<_>>().join(" and ");
+                let (got, want) = (readings(out[i]), readings(expected[i]));
+                panic!("{level}, {lanes} lanes, lane {i}: of {of} got {got}, expected {want}");
+            }
         }
     }
 }
@@ -91,33 +92,52 @@ pub fn same_number(a: u32, b: u32) -> bool {
 /// Tests of lane-wise operations: `name(arguments) -> result { on vectors } is { on numbers }`. In the first block `F` is the
 /// `Float` type of the width. Types: `float`, `int`, `uint`, `mask`, and as a result `exact_float`, whose NaN are compared too.
 /// `relaxed(fused)` names a variable for the second block: whether to expect one rounding.
+///
+/// One kernel serves all operations of an invocation, on one vector: a kernel for each, with a loop over many, would be
+/// optimized at every level and width, for minutes.
 macro_rules! operations {
-    ($($name:ident($($x:ident: $kind:ident),+) -> $out:ident $vector:block is $(relaxed($fused:ident))? $number:block)*) => {$(
-        #[test]
+    ($($name:ident($($x:ident: $kind:ident),+) -> $out:ident $vector:block is $(relaxed($fused:ident))? $number:block)*) => {
+        #[derive(Clone, Copy)]
+        #[allow(non_camel_case_types, reason = "named as the tests")]
+        enum Operation {
+            $($name),*
+        }
+
+        #[inline(always)]
+        fn body<F: simd::Float>(operation: Operation, arguments: &$crate::harness::Arguments, out: &mut [u32; 16]) {
+            use simd::Vector;
+            let [a, b, c] = arguments;
+            let arguments = [F::Index::load(a), F::Index::load(b), F::Index::load(c)];
+            let result = match operation {
+                $(Operation::$name => {
+                    let [$($x,)+ ..] = arguments;
+                    $(let $x = vector_of!($kind, $x);)+
+                    bits_of_vector!($out, $vector)
+                })*
+            };
+            result.store(out);
+        }
+
+        simd::kernel! {
+            fn run<S>(
+                width: $crate::harness::Width, operation: Operation,
+                arguments: &$crate::harness::Arguments, out: &mut [u32; 16]
+            ) {
+                at_width!(S, width, body(operation, arguments, out))
+            }
+        }
+
+        $(#[test]
         fn $name() {
-            #[inline(always)]
-            fn body<F: simd::Float>(columns: &[Vec<u32>], out: &mut [u32]) {
-                use simd::Vector;
-                for at in (0..out.len()).step_by(F::LANES) {
-                    let mut column = columns.iter();
-                    $(let $x = vector_of!($kind, <F::Index as Vector>::load(&column.next().unwrap()[at..]));)+
-                    <F::Index as Vector>::store(bits_of_vector!($out, $vector), &mut out[at..]);
-                }
-            }
-            simd::kernel! {
-                fn run<S>(width: $crate::harness::Width, columns: &[Vec<u32>], out: &mut [u32]) {
-                    at_width!(S, width, body(columns, out))
-                }
-            }
-            let arguments = [$(stringify!($x)),+];
-            $crate::harness::check(arguments.len(), run, comparison!($out), &|_fused, row| {
-                let mut row = row.iter();
-                $(let $x = number_of!($kind, *row.next().unwrap());)+
+            let arity = [$(stringify!($x)),+].len();
+            let run = |level, width, arguments: &_, out: &mut _| run(level, width, Operation::$name, arguments, out);
+            $crate::harness::check(arity, &run, comparison!($out), &|_fused, [$($x,)+ ..]| {
+                $(let $x = number_of!($kind, $x);)+
                 $(let $fused = _fused;)?
                 bits_of_number!($out, $number)
             });
-        }
-    )*};
+        })*
+    };
 }
 
 /// An argument of the vector expression.
@@ -132,7 +152,10 @@ macro_rules! vector_of {
         $bits
     };
     (mask, $bits:expr) => {
-        <F::Index as simd::Vector>::eq($bits & F::Index::splat(1), F::Index::splat(1))
+        <F::Index as simd::Vector>::eq(
+            ($bits) & <F::Index as simd::Vector>::splat(1),
+            <F::Index as simd::Vector>::splat(1),
+        )
     };
 }
 
@@ -166,7 +189,11 @@ macro_rules! bits_of_vector {
         $x
     };
     (mask, $x:expr) => {
-        <F::Index as simd::Vector>::select($x, F::Index::splat(1), F::Index::splat(0))
+        <F::Index as simd::Vector>::select(
+            $x,
+            <F::Index as simd::Vector>::splat(1),
+            <F::Index as simd::Vector>::splat(0),
+        )
     };
 }
 

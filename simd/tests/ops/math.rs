@@ -1,6 +1,6 @@
 //! Computed functions: the same bits everywhere as with one lane. How accurate they are is tested in `tests/math.rs`.
 
-use simd::{Float, Vector, math};
+use simd::math;
 
 operations! {
     exp2(x: float) -> float { math::exp2(x) } is { math::exp2(x) }

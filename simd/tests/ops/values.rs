@@ -107,20 +107,16 @@ impl Random {
     }
 }
 
-/// The arguments of an operation, a column each: special values crossed, random patterns, random floats of similar size.
-pub fn columns(arity: usize) -> Vec<Vec<u32>> {
+/// The arguments of an operation: special values crossed, random patterns, random floats of similar size.
+pub fn rows(arity: usize) -> Vec<[u32; 3]> {
     // Of triples every third value in each place.
     let special: Vec<u32> = SPECIAL.iter().copied().step_by(if arity < 3 { 1 } else { 3 }).collect();
     let n = special.len();
+    let crossed = (0..n.pow(arity as u32)).map(|row| [row, row / n, row / n / n].map(|digit| special[digit % n]));
+    let mut rows: Vec<[u32; 3]> = crossed.collect();
     let mut random = Random(1);
-    (0..arity)
-        .map(|place| {
-            let mut column: Vec<u32> =
-                (0..n.pow(arity as u32)).map(|row| special[row / n.pow(place as u32) % n]).collect();
-            column.extend((0..1 << 14).map(|_| random.bits()));
-            column.extend((0..1 << 14).map(|_| random.moderate().to_bits()));
-            column.resize(column.len().next_multiple_of(16), 0);
-            column
-        })
-        .collect()
+    rows.extend((0..1 << 14).map(|_| [0; 3].map(|_| random.bits())));
+    rows.extend((0..1 << 14).map(|_| [0; 3].map(|_| random.moderate().to_bits())));
+    rows.resize(rows.len().next_multiple_of(16), [0; 3]);
+    rows
 }

@@ -146,3 +146,76 @@ impl Bvh {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A root around two leaves: unit squares' halves at z = 0 and z = 1.
+    fn two_leaves() -> Bvh {
+        let triangle = |z: f32, id| Triangle::new([[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]], id, 0);
+        let triangles = vec![triangle(0.0, 4), triangle(1.0, 2)];
+        let [a, b] = [0, 1].map(|i: usize| triangles[i].bounds());
+        let nodes = vec![Node::inner(&a.union(&b), 3), Node::leaf(&a, 2, 0, 1), Node::leaf(&b, 3, 1, 1)];
+        Bvh { nodes, triangles }
+    }
+
+    #[test]
+    fn stats_of_a_small_tree() {
+        let bvh = two_leaves();
+        bvh.validate().unwrap();
+        let stats = bvh.stats();
+        assert_eq!((stats.nodes, stats.leaves, stats.triangles, stats.max_depth), (3, 2, 2, 1));
+        assert_eq!((stats.mean_leaf, stats.bytes, stats.bytes_per_triangle), (1.0, 192, 96.0));
+        // The root's box, its two children, and each triangle with its leaf's third of the root's area.
+        assert!((stats.sah_cost - (1.0 + 2.0 + 2.0 / 3.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_empty_tree_is_valid() {
+        let empty = Bvh { nodes: Vec::new(), triangles: Vec::new() };
+        empty.validate().unwrap();
+        assert_eq!(empty.stats(), BvhStats::default());
+    }
+
+    #[test]
+    fn a_lone_leaf_costs_its_tests() {
+        let mut bvh = two_leaves();
+        let bounds = bvh.nodes[0].bounds();
+        bvh.nodes = vec![Node::leaf(&bounds, 1, 0, 2)];
+        bvh.validate().unwrap();
+        assert_eq!((bvh.stats().sah_cost, bvh.stats().max_depth), (3.0, 0));
+    }
+
+    #[test]
+    fn degenerate_triangles_are_found() {
+        let triangle = Triangle::new([[0.0; 3], [1.0; 3], [2.0; 3]], 0, 0);
+        let bvh = Bvh { nodes: vec![Node::leaf(&triangle.bounds(), 1, 0, 1)], triangles: vec![triangle] };
+        assert!(bvh.validate().unwrap_err().contains("degenerate"));
+    }
+
+    #[test]
+    fn faults_are_found() {
+        let fault = |break_it: &dyn Fn(&mut Bvh)| {
+            let mut bvh = two_leaves();
+            break_it(&mut bvh);
+            bvh.validate().unwrap_err()
+        };
+        let small = Aabb { min: [0.0; 3], max: [1.0, 1.0, 0.5] };
+        for (message, break_it) in [
+            ("inner node 0 skips", &(|b: &mut Bvh| b.nodes[0] = b.nodes[0].with_skip(2)) as &dyn Fn(&mut Bvh)),
+            ("inner node 0 skips", &|b| b.nodes[0] = b.nodes[0].with_skip(4)),
+            ("leaf 1 skips", &|b| b.nodes[1] = b.nodes[1].with_skip(3)),
+            ("second root", &|b| b.nodes.push(b.nodes[2].with_skip(4))),
+            ("leaf 2 starts", &|b| b.nodes[2] = Node::leaf(&b.nodes[2].bounds(), 3, 0, 1)),
+            ("beyond the end", &|b| b.nodes[2] = Node::leaf(&b.nodes[2].bounds(), 3, 1, 2)),
+            ("node 0 has the box", &|b| b.nodes[0] = Node::inner(&small, 3)),
+            ("node 2 has the box", &|b| b.triangles[1].v0[2] = 0.75),
+            ("of 3 triangles", &|b| b.triangles.push(b.triangles[0])),
+            ("stored twice", &|b| b.triangles[1].id = 4),
+        ] {
+            let found = fault(break_it);
+            assert!(found.contains(message), "{found} instead of {message}");
+        }
+    }
+}

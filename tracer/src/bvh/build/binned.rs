@@ -39,11 +39,7 @@ pub enum ChildOrder {
 /// No leaf is deeper (the root is at depth 0): where only balanced splits still fit, splits are balanced.
 pub const MAX_DEPTH: u32 = 64;
 
-pub(super) fn build(
-    mut primitives: Vec<Primitive>,
-    config: &Config,
-    progress: &dyn Progress,
-) -> Result<Tree, Error> {
+pub(super) fn build(mut primitives: Vec<Primitive>, config: &Config, progress: &dyn Progress) -> Result<Tree, Error> {
     let mut ids = vec![0; primitives.len()];
     let mut scratch = primitives.clone();
     let bounds = union(&primitives);
@@ -218,9 +214,7 @@ impl Builder<'_> {
         let extent = |i: usize| centers.max[i] - centers.min[i];
         let axis = (1..3).fold(0, |a, b| if extent(b) > extent(a) { b } else { a });
         let n = range.src.len() / 2;
-        range.src.select_nth_unstable_by(n, |a, b| {
-            a.center(axis).total_cmp(&b.center(axis)).then(a.id().cmp(&b.id()))
-        });
+        range.src.select_nth_unstable_by(n, |a, b| a.center(axis).total_cmp(&b.center(axis)).then(a.id().cmp(&b.id())));
         self.split_at(range, n)
     }
 

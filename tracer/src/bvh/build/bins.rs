@@ -172,3 +172,58 @@ fn scatter(grid: &Grid, split: &Split, src: &[Primitive], below: &mut [Primitive
         a += usize::from(!is_below);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::primitive::union;
+    use super::*;
+    use crate::geometry::Aabb;
+
+    fn points(n: u32, scale: f32) -> Vec<Primitive> {
+        let at = |i: u32, m: u32| (i.wrapping_mul(m) >> 8) as f32 / 16_777_216.0 * scale - scale / 3.0;
+        let point = |i| [at(i, 2_654_435_761), at(i, 805_459_861), at(i, 3_674_653_429)];
+        (0..n).map(|i| Primitive::new(&Aabb::of_points([point(i)]), i)).collect()
+    }
+
+    #[test]
+    fn borders_fall_into_the_first_and_last_bin() {
+        for scale in [1e-36, 1e-30, 1e-3, 1.0, 1e9, 1e37] {
+            let primitives = points(1000, scale);
+            let grid = Grid::new(&centers(&primitives));
+            for axis in 0..3 {
+                let bins = |p: &Primitive| (p.center(axis), grid.bin(axis, p));
+                let mut bins: Vec<_> = primitives.iter().map(bins).collect();
+                bins.sort_by(|a, b| a.0.total_cmp(&b.0));
+                assert!(bins.is_sorted_by_key(|b| b.1), "bins follow the centers");
+                assert_eq!((bins[0].1, bins[999].1), (0, BINS - 1), "scale {scale}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_extent_there_is_no_split() {
+        let primitives = vec![points(1, 1.0)[0]; 100];
+        assert!(Binning::new(&primitives).best().is_none());
+    }
+
+    #[test]
+    fn scattering_fills_both_sides_as_counted() {
+        for n in [9, 1000, 3 * PIECE as u32 + 5] {
+            let src = points(n, 2.0);
+            let binning = Binning::new(&src);
+            for (axis, below) in (0..3).flat_map(|a| (1..BINS).map(move |b| (a, b))) {
+                let split = Split { axis, below, cost: 0.0 };
+                let count = binning.count_below(&split);
+                let mut dst = vec![src[0]; src.len()];
+                let (b, a) = dst.split_at_mut(count);
+                binning.scatter(&split, &src, b, a);
+                assert!(b.iter().all(|p| binning.grid.bin(axis, p) < below));
+                assert!(a.iter().all(|p| binning.grid.bin(axis, p) >= below));
+                assert_eq!(binning.sides(&split).map(|s| s.aabb()), [union(b), union(a)].map(|s| s.aabb()));
+                let mut ids: Vec<u32> = dst.iter().map(Primitive::id).collect();
+                ids.sort_unstable();
+                assert!(ids.into_iter().eq(0..n), "every primitive once");
+            }
+        }
+    }
+}

@@ -225,3 +225,64 @@ impl Hierarchy {
         Tree { nodes, ids }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shuffling_is_a_permutation_that_depends_on_the_seed() {
+        let shuffled = |seed| {
+            let mut items: Vec<u32> = (0..1000).collect();
+            shuffle(&mut items, seed);
+            items
+        };
+        assert_ne!(shuffled(1), shuffled(2));
+        let moved = shuffled(1).iter().enumerate().filter(|&(i, &x)| i as u32 != x).count();
+        assert!(moved > 950, "{moved} of 1000 moved");
+        let mut sorted = shuffled(1);
+        sorted.sort_unstable();
+        assert!(sorted.into_iter().eq(0..1000));
+    }
+
+    fn cube(x: f32, size: f32) -> Aabb {
+        Aabb { min: [x, 0.0, 0.0], max: [x + size, size, size] }
+    }
+
+    #[test]
+    fn near_ones_are_grouped() {
+        let mut h = Hierarchy::new(&Config::default(), 4);
+        for (id, x) in [0.0, 100.0, 1.5, 101.5].into_iter().enumerate() {
+            h.insert(&cube(x, 1.0), id as u32);
+        }
+        let tree = h.flatten(true);
+        assert_eq!(tree.nodes.len(), 7, "two pairs");
+        assert_eq!(tree.nodes[1].bounds(), cube(0.0, 1.0).union(&cube(1.5, 1.0)));
+        assert_eq!(tree.ids, [0, 2, 1, 3]);
+    }
+
+    #[test]
+    fn no_node_has_more_children_than_allowed() {
+        for max_children in [2, 3, 8] {
+            let mut h = Hierarchy::new(&Config { max_children, ..Default::default() }, 1000);
+            (0..1000).for_each(|id| h.insert(&cube(0.0, 1.0), id));
+            assert!(h.nodes.iter().all(|n| n.children <= max_children));
+            let tree = h.flatten(true);
+            assert_eq!(tree.ids.len(), 1000);
+        }
+    }
+
+    #[test]
+    fn deep_trees_need_no_deep_stack() {
+        // A chain: every node has a leaf and the next node.
+        let n = 200_000;
+        let mut h = Hierarchy::new(&Config::default(), n);
+        for i in 0..n as u32 {
+            h.add_leaf(2 * i, &cube(0.0, 1.0), i);
+            h.add_leaf(2 * i, &cube(0.0, 1.0), i);
+        }
+        let tree = h.flatten(true);
+        assert_eq!(tree.nodes.len(), 2 * n + 1);
+        assert_eq!(tree.nodes[0].skip() as usize, tree.nodes.len());
+    }
+}

@@ -6,6 +6,8 @@ pub mod insertion;
 mod primitive;
 mod sah;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
 use super::{Bvh, Node};
 use crate::Error;
