@@ -1,5 +1,7 @@
 //! What the tests and benches of the workspace share.
 
+pub mod brute_force;
+
 use std::path::{Path, PathBuf};
 
 /// The file of a real scene (`conference`, `crytek_sponza`, `country_kitchen`): `NAME.obj.zst` in the folder that the
@@ -25,4 +27,34 @@ pub fn real_scene(name: &str) -> Option<PathBuf> {
     assert!(std::env::var_os("CI").is_none(), "{message}");
     println!("{message}");
     None
+}
+
+/// SplitMix64: the same numbers everywhere.
+#[derive(Debug, Clone)]
+pub struct Random(pub u64);
+
+impl Random {
+    /// The next 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ z >> 31
+    }
+
+    /// Between 0 and 1, 24 bits.
+    pub fn unit(&mut self) -> f32 {
+        (self.bits() >> 40) as f32 / (1 << 24) as f32
+    }
+
+    /// Between `low` and `high`.
+    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + self.unit() * (high - low)
+    }
+
+    /// One of the items.
+    pub fn pick<T: Copy>(&mut self, items: &[T]) -> T {
+        items[(self.bits() % items.len() as u64) as usize]
+    }
 }

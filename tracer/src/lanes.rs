@@ -4,7 +4,7 @@ use simd::{Float, Kernel, Level, Simd};
 use std::fmt;
 use std::str::FromStr;
 
-/// Rays per packet; pixels that are worked on at once.
+/// Rays per packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Width {
     /// A single ray, in `f32`.
@@ -78,6 +78,22 @@ pub(crate) fn chunks<F: Float>(blocks: usize) -> impl Iterator<Item = (usize, us
 /// Runs `job` at a level with vectors of `lanes` lanes: 1 (plain `f32`, whatever the level), 4, 8 or 16.
 pub(crate) fn run<J: Lanes>(level: Level, lanes: usize, job: J) -> J::Output {
     if lanes == 1 { job.run::<f32>() } else { level.run(AtWidth { lanes, job }) }
+}
+
+/// Runs `job` with the registers of the level; with plain `f32` for [`Width::One`].
+pub(crate) fn run_native<J: Lanes>(level: Level, width: Width, job: J) -> J::Output {
+    if width == Width::One { job.run::<f32>() } else { level.run(Native(job)) }
+}
+
+struct Native<J>(J);
+
+impl<J: Lanes> Kernel for Native<J> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> J::Output {
+        self.0.run::<S::Float>()
+    }
 }
 
 /// [`run`] in plain Rust, compiled for no other level.

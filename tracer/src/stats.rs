@@ -1,4 +1,4 @@
-//! Counters of traversal work. Kernels take a [`Count`]; [`NoCount`] compiles to nothing.
+//! Counters of traversal work, at no cost when off.
 
 use std::ops::Add;
 

@@ -1,7 +1,5 @@
 //! Floats, lane by lane.
 
-use simd::Float;
-
 operations! {
     add(a: float, b: float) -> float { a + b } is { a + b }
     sub(a: float, b: float) -> float { a - b } is { a - b }

@@ -11,7 +11,7 @@ mod memory;
 mod values;
 
 use harness::{Width, everywhere};
-use simd::{Isa, Level, Simd, Vector};
+use simd::{Isa, Level, Vector};
 use std::any::TypeId;
 use std::io::Write;
 

@@ -6,5 +6,4 @@ operations! {
     exp2(x: float) -> float { math::exp2(x) } is { math::exp2(x) }
     log2(x: float) -> float { math::log2(x) } is { math::log2(x) }
     pow(x: float, y: float) -> float { math::pow(x, y) } is { math::pow(x, y) }
-    pow_of_positive(x: float, y: float) -> float { math::pow(x.abs(), y) } is { math::pow(x.abs(), y) }
 }

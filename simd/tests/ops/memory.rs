@@ -107,17 +107,17 @@ impl<L: AnyLane> Job<L> for Gather<'_, L> {
     }
 }
 
-/// From a function that notes the order of its calls, to the lanes one by one.
-struct FromFn<'a, L>(&'a [L], &'a mut Vec<usize>);
+/// From a function, to a block and to the lanes one by one.
+struct FromFn<'a, L>(&'a [L; 16], &'a mut Block<L>, &'a mut [L]);
 impl<L: AnyLane> Job<L> for FromFn<'_, L> {
-    type Output = (Block<L>, Vec<L>);
+    type Output = ();
     #[inline(always)]
-    fn run<V: Vector<Lane = L>>(self) -> Self::Output {
-        let vector = V::from_fn(|i| {
-            self.1.push(i);
-            self.0[i]
-        });
-        (vector.to_block(), (0..V::LANES).map(|i| vector.lane(i)).collect())
+    fn run<V: Vector<Lane = L>>(self) {
+        let vector = V::from_fn(|i| self.0[i]);
+        *self.1 = vector.to_block();
+        for (i, lane) in self.2[..V::LANES].iter_mut().enumerate() {
+            *lane = vector.lane(i);
+        }
     }
 }
 
@@ -249,12 +249,14 @@ mod generic {
     }
 
     pub fn from_fn_to_block_lane<L: AnyLane>(level: Level, width: Width) {
-        let (src, lanes, mut calls) = (numbers::<L>(16), width.lanes(), Vec::new());
-        let (block, lane_by_lane) = L::run(level, width, FromFn(&src, &mut calls));
-        assert_eq!(calls, (0..lanes).collect::<Vec<_>>(), "{level}, {width:?}");
-        assert_eq!(bits(&block.0[..lanes]), bits(&src[..lanes]), "{level}, {width:?}");
-        assert_eq!(bits(&block.0[lanes..]), vec![0; 16 - lanes], "{level}, {width:?}");
-        assert_eq!(bits(&lane_by_lane), bits(&src[..lanes]), "{level}, {width:?}");
+        let (numbers, lanes) = (numbers::<L>(16), width.lanes());
+        let src = std::array::from_fn(|i| numbers[i]);
+        let (mut block, mut one_by_one) = (Block(src), [L::default(); 16]);
+        L::run(level, width, FromFn(&src, &mut block, &mut one_by_one));
+        let mut expected = [0; 16];
+        expected[..lanes].copy_from_slice(&bits(&src[..lanes]));
+        assert_eq!(bits(&block.0), expected, "{level}, {width:?}");
+        assert_eq!(bits(&one_by_one), expected, "{level}, {width:?}");
         for bad in [lanes, 16, usize::MAX] {
             assert!(panics(|| L::run(level, width, OneLane(bad))), "{level}, {width:?}, {bad}");
         }

@@ -24,24 +24,25 @@ pub(crate) fn intersect<F: Float>(triangle: &Triangle, ray: &Packet<F>, near: Ne
     let from_v0 = ray.org - Vec3::splat(triangle.v0);
     let p = ray.dir.cross(e2);
     let q = from_v0.cross(e1);
-    // Everything times the determinant's sign; the division is left to lanes that hit.
+    // Everything times the determinant's sign; the division is left to packets that hit.
     let det = e1.dot(p);
     let u = from_v0.dot(p).mul_sign(det);
     let v = ray.dir.dot(q).mul_sign(det);
+    let size = det.abs();
     let zero = F::splat(0.0);
-    let inside = zero.le(u) & zero.le(v) & (u + v).le(det.abs()) & det.ne(zero);
+    // A determinant that is not a normal number has no finite reciprocal.
+    let inside = zero.le(u) & zero.le(v) & (u + v).le(size) & F::splat(f32::MIN_POSITIVE).le(size);
     if inside.none() {
         return None;
     }
 
     let infinity = F::splat(f32::INFINITY);
     let (box_near, box_far) = interval(&planes(triangle), ray, near, -infinity, infinity);
-    let t = e2.dot(q).mul_sign(det);
-    let det = det.abs();
+    let inv = F::splat(1.0) / size;
     // Adding 0 turns -0, which depends on the order of comparisons, into 0.
-    let t = (t / det).max(box_near).min(box_far) + zero;
+    let t = (e2.dot(q).mul_sign(det) * inv).max(box_near).min(box_far) + zero;
     let mask = inside & box_near.le(box_far) & ray.t_min.le(t) & t.le(ray.t_max);
-    Some(Candidate { mask, t, u: u / det, v: v / det })
+    Some(Candidate { mask, t, u: u * inv, v: v * inv })
 }
 
 /// [`Triangle::bounds`] in the order of [`Node::planes`](crate::bvh::Node::planes).

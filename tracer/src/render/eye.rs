@@ -31,11 +31,10 @@ impl EyeRays {
     pub fn new(camera: &Camera, width: usize, height: usize, level: Level, lanes: Width) -> Self {
         let tiles = z_curve(width.div_ceil(4), height.div_ceil(4));
         let view = camera.frame_vectors(width, height);
-        let lanes = lanes.lanes(level);
         let rays = RayBatch::from_origin(view.origin, 16 * tiles.len(), |blocks| {
             let generate = |_, tiles: &[[u16; 2]], blocks: &mut [RayBlock]| {
                 let view = [view.corner, view.dx, view.dy];
-                lanes::run(level, lanes, Generate { view, size: [width, height], tiles, blocks });
+                lanes::run_native(level, lanes, Generate { view, size: [width, height], tiles, blocks });
                 Ok(())
             };
             let done = parallel::portions(&tiles, blocks, generate, || (), |(), ()| ());

@@ -22,9 +22,9 @@ pub struct Settings {
     pub width: usize,
     /// Image height in pixels.
     pub height: usize,
-    /// Level of the first and third pass; the second has its own, the method's.
+    /// Level of the first and third pass, which use its registers whole; the second has its own, the method's.
     pub level: Level,
-    /// Vector width of the first and third pass.
+    /// [`Width::One`] to do these passes one pixel at a time, in plain `f32`.
     pub lanes: Width,
     /// Whether lights cast shadows.
     pub shadows: bool,

@@ -65,11 +65,10 @@ pub struct Lighting {
 
 /// Rays from a light to the points that `rays` hit, short of the surface itself. They share their origin, the light.
 pub(crate) fn shadow_rays(rays: &RayBatch, hits: &HitBatch, light: &Light, level: Level, lanes: Width) -> RayBatch {
-    let lanes = lanes.lanes(level);
     RayBatch::from_origin(light.position, rays.len(), |shadow| {
         let pairs: Vec<(&RayBlock, &HitBlock)> = rays.blocks().iter().zip(hits.blocks()).collect();
         let generate = |_, pairs: &[(&RayBlock, &HitBlock)], shadow: &mut [RayBlock]| {
-            lanes::run(level, lanes, ShadowRays { light: light.position, pairs, shadow });
+            lanes::run_native(level, lanes, ShadowRays { light: light.position, pairs, shadow });
             Ok(())
         };
         let done = portions(&pairs, shadow, generate, || (), |(), ()| ());
@@ -149,11 +148,10 @@ pub(crate) struct Job<'a> {
 /// # Errors
 /// [`Error::Cancelled`].
 pub(crate) fn shade(job: &Job<'_>) -> Result<Vec<[Block<f32>; 3]>, Error> {
-    let lanes = job.lanes.lanes(job.level);
     let mut colors = vec![[Block::default(); 3]; job.rays.blocks().len()];
     let portion = |first, rays: &[RayBlock], colors: &mut [[Block<f32>; 3]]| {
         job.cx.check()?;
-        lanes::run(job.level, lanes, Shade { job, first, rays, colors });
+        lanes::run_native(job.level, job.lanes, Shade { job, first, rays, colors });
         Ok(())
     };
     portions(job.rays.blocks(), &mut colors, portion, || (), |(), ()| ())?;
