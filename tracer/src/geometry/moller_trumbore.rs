@@ -47,7 +47,7 @@ pub(crate) fn intersect<F: Float>(triangle: &Triangle, ray: &Packet<F>, near: Ne
 
 /// [`Triangle::bounds`] in the order of [`Node::planes`](crate::bvh::Node::planes).
 #[inline(always)]
-fn planes(triangle: &Triangle) -> [f32; 8] {
+pub(crate) fn planes(triangle: &Triangle) -> [f32; 8] {
     let mut planes = [0.0; 8];
     for axis in 0..3 {
         let a = triangle.v0[axis];

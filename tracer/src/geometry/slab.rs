@@ -9,7 +9,7 @@ use simd::Float;
 
 /// Which of a box's planes is the near one on each axis, for rays whose directions have the same signs.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Near([usize; 3]);
+pub(crate) struct Near(pub(crate) [usize; 3]);
 
 impl Near {
     /// From the direction of one lane: a bit per axis, set for negative.

@@ -51,7 +51,7 @@ impl<'a> Frame<'a> {
         Self {
             settings,
             camera,
-            lighting: Lighting { lights, background: scene.background },
+            lighting: Lighting { lights, ambient: scene.ambient, background: scene.background },
             surfaces,
             eye: EyeRays::default(),
             hits: HitBatch::new(),

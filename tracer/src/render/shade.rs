@@ -59,6 +59,8 @@ fn face_normal([a, b, c]: [[f32; 3]; 3]) -> [f32; 3] {
 pub struct Lighting {
     /// Point lights.
     pub lights: Vec<Light>,
+    /// Intensity of the ambient light.
+    pub ambient: f32,
     /// What rays see that hit nothing.
     pub background: [f32; 3],
 }
@@ -201,7 +203,7 @@ fn phong<F: Float>(job: &Job<'_>, point: &Points<F>, block: usize, chunk: usize)
     let specular = words3(materials, material, Surfaces::MATERIAL, 6, point.hit);
     let shininess = word(materials, material, Surfaces::MATERIAL, 9, point.hit);
 
-    let mut rgb = ambient;
+    let mut rgb = ambient.scale(F::splat(job.lighting.ambient));
     for (number, light) in job.lighting.lights.iter().enumerate() {
         let to_light = (Vec3::splat(light.position) - point.position).normalize();
         let cos = to_light.dot(normal);

@@ -34,6 +34,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// The scene's own view, if it has one.
     pub camera: Option<Camera>,
+    /// Intensity of the ambient light, which is white.
+    pub ambient: f32,
     /// Linear RGB seen by rays that hit nothing.
     pub background: [f32; 3],
 }

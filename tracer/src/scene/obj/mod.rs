@@ -41,7 +41,9 @@ pub fn read(path: &Path, progress: &dyn Progress) -> Result<(Scene, Vec<String>)
     let library = mtl::read(path, &outline, &mut warnings)?;
     let materials = assign_materials(&mut mesh, &outline, library, path, &mut warnings);
     let name = stem(path).unwrap_or_default();
-    let scene = Scene { name, mesh, materials, lights: Vec::new(), camera: None, background: Scene::SKY };
+    // Many exporters write an ambient coefficient of 1 for everything: at full light it would wash the picture out.
+    let ambient = 0.1;
+    let scene = Scene { name, mesh, materials, lights: Vec::new(), camera: None, ambient, background: Scene::SKY };
     Ok((scene, warnings))
 }
 

@@ -283,6 +283,7 @@ fn difficult_scenes_come_back_too() {
         materials: vec![grey("a", 0.1), grey("a", 0.2), grey(" a\nb\\", 0.3), grey("", 0.4)],
         lights: vec![],
         camera: None,
+        ambient: 1.0,
         background: [0.0; 3],
     };
     let (_folder, back) = written(&scene);

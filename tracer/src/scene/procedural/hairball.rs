@@ -41,6 +41,7 @@ pub fn hairball(size: u32) -> Scene {
         materials: vec![glossy("hair", [0.62, 0.40, 0.22], [0.1, 0.9, 0.3], 20.0)],
         lights: [[6.0, 9.0, 8.0], [-9.0, 3.0, 6.0]].map(|position| Light { position, intensity }).into(),
         camera: Some(Camera { eye: [0.0, 0.0, 7.0], at: [0.0; 3], up: [0.0, 1.0, 0.0], fov: 90.0 }),
+        ambient: 1.0,
         background: Scene::SKY,
     }
 }

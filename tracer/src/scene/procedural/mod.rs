@@ -133,6 +133,7 @@ fn spd(which: Builtin, made: Tessellator, materials: Vec<Material>, lights: &[[f
         materials,
         lights: lights.iter().map(|&position| Light { position, intensity: [intensity; 3] }).collect(),
         camera: Some(camera),
+        ambient: 1.0,
         background: Scene::SKY,
     }
 }
