@@ -120,10 +120,12 @@ impl<V: Vector> Vector for Pair<V> {
     }
     #[inline(always)]
     fn load_block(block: &Block<V::Lane>, chunk: usize) -> Self {
+        assert!(chunk < 16 / Self::LANES, "chunk {chunk} of a block");
         Self(V::load_block(block, 2 * chunk), V::load_block(block, 2 * chunk + 1))
     }
     #[inline(always)]
     fn store_block(self, block: &mut Block<V::Lane>, chunk: usize) {
+        assert!(chunk < 16 / Self::LANES, "chunk {chunk} of a block");
         self.0.store_block(block, 2 * chunk);
         self.1.store_block(block, 2 * chunk + 1);
     }

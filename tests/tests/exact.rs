@@ -5,7 +5,7 @@ use simd::{Isa, Level};
 use tests::{Random, brute_force, real_scene};
 use tracer::bvh::{BuildConfig, Bvh};
 use tracer::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
-use tracer::method::{BitVec, Context, Method, Packet, SlabForm, Width};
+use tracer::method::{BitVec, Context, Method, Packet, SharedOrigin, SlabForm, Width};
 use tracer::progress::Silent;
 use tracer::render::EyeRays;
 use tracer::scene::{Mesh, Scene, builtin};
@@ -35,7 +35,7 @@ fn assert_same(hits: &HitBatch, expected: &HitBatch, rays: &RayBatch, what: &str
     }
 }
 
-/// All levels x widths x slab forms, then thread counts, against the single-ray walk; that against brute force on `checked`
+/// All levels x widths x forms of the box test, then thread counts, against the single-ray walk; that against brute force on `checked`
 /// rays spread over the batch. Returns how many rays hit.
 fn check(name: &str, mesh: &Mesh, trees: &[(&str, &Bvh)], rays: &RayBatch, checked: usize) -> usize {
     let expected = closest(&Packet::new(trees[0].1, Level::SCALAR, Width::One), rays);
@@ -48,9 +48,14 @@ fn check(name: &str, mesh: &Mesh, trees: &[(&str, &Bvh)], rays: &RayBatch, check
     for &(tree, bvh) in trees {
         for level in Level::available() {
             for width in WIDTHS {
-                for form in [SlabForm::Exact, SlabForm::Conservative] {
-                    let what = format!("{name}, {tree} tree, {level}, width {width}, {form:?}");
-                    let method = Packet::new(bvh, level, width).with_form(form);
+                for (form, shared) in [
+                    (SlabForm::Exact, SharedOrigin::Never),
+                    (SlabForm::Exact, SharedOrigin::Always),
+                    (SlabForm::Conservative, SharedOrigin::Auto),
+                ] {
+                    let what =
+                        format!("{name}, {tree} tree, {level}, width {width}, {form:?}, shared origin {shared:?}");
+                    let method = Packet::new(bvh, level, width).with_form(form).with_shared_origin(shared);
                     assert_same(&closest(&method, rays), &expected, rays, &what);
                     let occluded = any(&method, rays);
                     for (i, hit) in expected.iter().enumerate() {

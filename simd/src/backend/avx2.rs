@@ -201,13 +201,13 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn load_block(block: &Block<$Lane>, chunk: usize) -> Self {
-                let src: *const $Lane = block.0[8 * chunk..][..8].as_ptr();
+                let src: *const $Lane = block.0.as_chunks::<8>().0[chunk].as_ptr();
                 // SAFETY: eight elements are there to read, 32 * chunk bytes into a block aligned to 64.
                 Self::of_ps(unsafe { _mm256_load_ps(src.cast()) })
             }
             #[inline(always)]
             fn store_block(self, block: &mut Block<$Lane>, chunk: usize) {
-                let dst: *mut $Lane = block.0[8 * chunk..][..8].as_mut_ptr();
+                let dst: *mut $Lane = block.0.as_chunks_mut::<8>().0[chunk].as_mut_ptr();
                 // SAFETY: eight elements are there to write, 32 * chunk bytes into a block aligned to 64.
                 unsafe { _mm256_store_ps(dst.cast(), self.ps()) }
             }

@@ -204,13 +204,13 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn load_block(block: &Block<$Lane>, chunk: usize) -> Self {
-                let src: *const $Lane = block.0[16 * chunk..][..16].as_ptr();
+                let src: *const $Lane = block.0.as_chunks::<16>().0[chunk].as_ptr();
                 // SAFETY: sixteen elements are there to read, 64 * chunk bytes into a block aligned to 64.
                 Self::of_ps(unsafe { _mm512_load_ps(src.cast()) })
             }
             #[inline(always)]
             fn store_block(self, block: &mut Block<$Lane>, chunk: usize) {
-                let dst: *mut $Lane = block.0[16 * chunk..][..16].as_mut_ptr();
+                let dst: *mut $Lane = block.0.as_chunks_mut::<16>().0[chunk].as_mut_ptr();
                 // SAFETY: sixteen elements are there to write, 64 * chunk bytes into a block aligned to 64.
                 unsafe { _mm512_store_ps(dst.cast(), self.ps()) }
             }

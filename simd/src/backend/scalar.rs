@@ -34,7 +34,8 @@ macro_rules! emulation {
             type Float = Self::Float4;
         }
 
-        #[inline]
+        // Like the functions of the other levels, which cannot be inlined.
+        #[inline(never)]
         pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
             kernel.run::<$Level>()
         }

@@ -219,13 +219,13 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn load_block(block: &Block<$Lane>, chunk: usize) -> Self {
-                let src: *const $Lane = block.0[4 * chunk..][..4].as_ptr();
+                let src: *const $Lane = block.0.as_chunks::<4>().0[chunk].as_ptr();
                 // SAFETY: four elements are there to read, 16 * chunk bytes into a block aligned to 64.
                 Self::of_ps(unsafe { _mm_load_ps(src.cast()) })
             }
             #[inline(always)]
             fn store_block(self, block: &mut Block<$Lane>, chunk: usize) {
-                let dst: *mut $Lane = block.0[4 * chunk..][..4].as_mut_ptr();
+                let dst: *mut $Lane = block.0.as_chunks_mut::<4>().0[chunk].as_mut_ptr();
                 // SAFETY: four elements are there to write, 16 * chunk bytes into a block aligned to 64.
                 unsafe { _mm_store_ps(dst.cast(), self.ps()) }
             }

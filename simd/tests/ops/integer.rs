@@ -41,8 +41,6 @@ mod int {
 }
 
 mod uint {
-    use super::*;
-
     operations! {
         add(a: uint, b: uint) -> uint { a + b } is { a.wrapping_add(b) }
         sub(a: uint, b: uint) -> uint { a - b } is { a.wrapping_sub(b) }

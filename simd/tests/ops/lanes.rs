@@ -79,16 +79,17 @@ fn first_smallest<L: PartialOrd + Copy>(lanes: &[L], mask: u32) -> Option<usize>
     on.reduce(|best, i| if lanes[i] < lanes[best] { i } else { best })
 }
 
-fn check_reductions<L: AnyLane>(patterns: &[u32; 16], mask: u32) {
+fn check_reductions<L: AnyLane>(patterns: &[u32; 16], mask: u32) -> Result<(), TestCaseError> {
     let numbers = patterns.map(L::of_bits);
     for (level, width) in everywhere() {
         let numbers = &numbers[..width.lanes()];
         let (min, max, min_index) = L::run(level, width, Reduce(numbers, mask));
         let place = format!("{level}, {numbers:?}, mask {mask:x}");
-        assert_eq!(min.bits(), tree(numbers, |a, b| if a < b { a } else { b }).bits(), "reduce_min, {place}");
-        assert_eq!(max.bits(), tree(numbers, |a, b| if a > b { a } else { b }).bits(), "reduce_max, {place}");
-        assert_eq!(min_index, first_smallest(numbers, mask), "min_index, {place}");
+        prop_assert_eq!(min.bits(), tree(numbers, |a, b| if a < b { a } else { b }).bits(), "reduce_min, {place}");
+        prop_assert_eq!(max.bits(), tree(numbers, |a, b| if a > b { a } else { b }).bits(), "reduce_max, {place}");
+        prop_assert_eq!(min_index, first_smallest(numbers, mask), "min_index, {place}");
     }
+    Ok(())
 }
 
 #[inline(always)]
@@ -115,9 +116,9 @@ fn sixteen_lanes() -> impl Strategy<Value = [u32; 16]> {
 proptest! {
     #[test]
     fn reductions(patterns in sixteen_lanes(), mask in any::<u32>()) {
-        check_reductions::<f32>(&patterns, mask);
-        check_reductions::<i32>(&patterns, mask);
-        check_reductions::<u32>(&patterns, mask);
+        check_reductions::<f32>(&patterns, mask)?;
+        check_reductions::<i32>(&patterns, mask)?;
+        check_reductions::<u32>(&patterns, mask)?;
     }
 
     #[test]
@@ -133,11 +134,12 @@ proptest! {
 
 /// The lane types' largest value, as what fills the lanes that are off, is not mistaken for one of them.
 #[test]
-fn min_index_of_the_largest() {
+fn min_index_of_the_largest() -> Result<(), TestCaseError> {
     for mask in [0, 1, 2, 0x8000, 0xfff8, u32::MAX] {
-        check_reductions::<f32>(&[f32::INFINITY.to_bits(); 16], mask);
-        check_reductions::<f32>(&[f32::NAN.to_bits(); 16], mask);
-        check_reductions::<i32>(&[i32::MAX as u32; 16], mask);
-        check_reductions::<u32>(&[u32::MAX; 16], mask);
+        check_reductions::<f32>(&[f32::INFINITY.to_bits(); 16], mask)?;
+        check_reductions::<f32>(&[f32::NAN.to_bits(); 16], mask)?;
+        check_reductions::<i32>(&[i32::MAX as u32; 16], mask)?;
+        check_reductions::<u32>(&[u32::MAX; 16], mask)?;
     }
+    Ok(())
 }

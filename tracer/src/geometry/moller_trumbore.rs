@@ -1,6 +1,6 @@
 //! The triangle test of Möller & Trumbore 1997, and the exact hit made of it.
 
-use super::slab::{Near, interval};
+use super::slab::{Near, Origin, interval};
 use super::{Packet, Triangle, Vec3};
 use simd::{Float, Mask};
 
@@ -19,11 +19,15 @@ pub(crate) struct Candidate<F: Float> {
 /// A hit counts only where the ray's computed interval in the triangle's own box is not empty; its `t` is clamped to that
 /// interval. Boxes on the way can then not reject it (see [`super::slab`]). `None` when no lane is hit.
 #[inline(always)]
-pub(crate) fn intersect<F: Float>(triangle: &Triangle, ray: &Packet<F>, near: Near) -> Option<Candidate<F>> {
+pub(crate) fn intersect<F: Float, O: Origin<F>>(
+    triangle: &Triangle,
+    ray: &Packet<F>,
+    origin: O,
+    near: Near,
+) -> Option<Candidate<F>> {
     let (e1, e2) = (Vec3::splat(triangle.e1), Vec3::splat(triangle.e2));
-    let from_v0 = ray.org - Vec3::splat(triangle.v0);
+    let (from_v0, q, distance) = origin.from_triangle(ray, triangle);
     let p = ray.dir.cross(e2);
-    let q = from_v0.cross(e1);
     // Everything times the determinant's sign; the division is left to packets that hit.
     let det = e1.dot(p);
     let u = from_v0.dot(p).mul_sign(det);
@@ -37,17 +41,17 @@ pub(crate) fn intersect<F: Float>(triangle: &Triangle, ray: &Packet<F>, near: Ne
     }
 
     let infinity = F::splat(f32::INFINITY);
-    let (box_near, box_far) = interval(&planes(triangle), ray, near, -infinity, infinity);
+    let (box_near, box_far) = interval(&planes(triangle), ray, origin, near, -infinity, infinity);
     let inv = F::splat(1.0) / size;
     // Adding 0 turns -0, which depends on the order of comparisons, into 0.
-    let t = (e2.dot(q).mul_sign(det) * inv).max(box_near).min(box_far) + zero;
+    let t = (distance.mul_sign(det) * inv).max(box_near).min(box_far) + zero;
     let mask = inside & box_near.le(box_far) & ray.t_min.le(t) & t.le(ray.t_max);
     Some(Candidate { mask, t, u: u * inv, v: v * inv })
 }
 
 /// [`Triangle::bounds`] in the order of [`Node::planes`](crate::bvh::Node::planes).
 #[inline(always)]
-pub(crate) fn planes(triangle: &Triangle) -> [f32; 8] {
+fn planes(triangle: &Triangle) -> [f32; 8] {
     let mut planes = [0.0; 8];
     for axis in 0..3 {
         let a = triangle.v0[axis];

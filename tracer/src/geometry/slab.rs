@@ -4,12 +4,12 @@
 //! interval computed for any box around it, and no box on the way to a triangle can reject a hit that lies in the interval of
 //! the triangle's own box.
 
-use super::{Packet, Vec3};
+use super::{Packet, Triangle, Vec3};
 use simd::Float;
 
 /// Which of a box's planes is the near one on each axis, for rays whose directions have the same signs.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Near(pub(crate) [usize; 3]);
+pub(crate) struct Near([usize; 3]);
 
 impl Near {
     /// From the direction of one lane: a bit per axis, set for negative.
@@ -20,22 +20,86 @@ impl Near {
 
     /// Near and far plane of an axis, from `min x y z _ max x y z _`.
     #[inline(always)]
-    fn planes<F: Float>(self, planes: &[f32; 8], axis: usize) -> (F, F) {
+    fn planes(self, planes: &[f32; 8], axis: usize) -> (f32, f32) {
         let near = self.0[axis];
-        (F::splat(planes[near & 7]), F::splat(planes[(near ^ 4) & 7]))
+        (planes[near & 7], planes[(near ^ 4) & 7])
+    }
+}
+
+/// Where the rays of a packet start: what can be computed once for all of them when they share it (Geimer & Müller 2003,
+/// section 3.3). Both ways compute the same bits.
+pub(crate) trait Origin<F: Float>: Copy {
+    /// `plane - origin` on an axis.
+    fn to_plane(self, ray: &Packet<F>, plane: f32, axis: usize) -> F;
+
+    /// `o = origin - v0`, `o x e1`, `e2 . (o x e1)`.
+    fn from_triangle(self, ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F);
+}
+
+/// Each ray has its own origin.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PerRay;
+
+impl<F: Float> Origin<F> for PerRay {
+    #[inline(always)]
+    fn to_plane(self, ray: &Packet<F>, plane: f32, axis: usize) -> F {
+        F::splat(plane)
+            - match axis {
+                0 => ray.org.x,
+                1 => ray.org.y,
+                _ => ray.org.z,
+            }
+    }
+
+    #[inline(always)]
+    fn from_triangle(self, ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F) {
+        let o = ray.org - Vec3::splat(triangle.v0);
+        let q = o.cross(Vec3::splat(triangle.e1));
+        (o, q, Vec3::splat(triangle.e2).dot(q))
+    }
+}
+
+/// All rays start at one point.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shared(pub(crate) [f32; 3]);
+
+impl<F: Float> Origin<F> for Shared {
+    #[inline(always)]
+    fn to_plane(self, _ray: &Packet<F>, plane: f32, axis: usize) -> F {
+        F::splat(plane - self.0[axis])
+    }
+
+    #[inline(always)]
+    fn from_triangle(self, _ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F) {
+        let lanes = |[x, y, z]: [f32; 3]| Vec3::<f32> { x, y, z };
+        let o = lanes(self.0) - lanes(triangle.v0);
+        let q = o.cross(lanes(triangle.e1));
+        let distance = lanes(triangle.e2).dot(q);
+        (Vec3::splat([o.x, o.y, o.z]), Vec3::splat([q.x, q.y, q.z]), F::splat(distance))
     }
 }
 
 /// The interval of each ray in a box, `t_near` and padded `t_far`; empty (`t_near > t_far`) when it is missed.
 /// `from` and `to` cut it further.
 #[inline(always)]
-pub(crate) fn interval<F: Float>(planes: &[f32; 8], ray: &Packet<F>, near: Near, from: F, to: F) -> (F, F) {
-    let Vec3 { x: ox, y: oy, z: oz } = ray.org;
-    let (nx, fx) = near.planes::<F>(planes, 0);
-    let (ny, fy) = near.planes::<F>(planes, 1);
-    let (nz, fz) = near.planes::<F>(planes, 2);
-    let t_near = ((nx - ox) * ray.inv_dir.x).max((ny - oy) * ray.inv_dir.y).max(((nz - oz) * ray.inv_dir.z).max(from));
-    let t_far =
-        ((fx - ox) * ray.inv_dir_far.x).min((fy - oy) * ray.inv_dir_far.y).min(((fz - oz) * ray.inv_dir_far.z).min(to));
+pub(crate) fn interval<F: Float, O: Origin<F>>(
+    planes: &[f32; 8],
+    ray: &Packet<F>,
+    origin: O,
+    near: Near,
+    from: F,
+    to: F,
+) -> (F, F) {
+    let (near_x, far_x) = near.planes(planes, 0);
+    let (near_y, far_y) = near.planes(planes, 1);
+    let (near_z, far_z) = near.planes(planes, 2);
+    let x = origin.to_plane(ray, near_x, 0) * ray.inv_dir.x;
+    let y = origin.to_plane(ray, near_y, 1) * ray.inv_dir.y;
+    let z = origin.to_plane(ray, near_z, 2) * ray.inv_dir.z;
+    let t_near = x.max(y).max(z.max(from));
+    let x = origin.to_plane(ray, far_x, 0) * ray.inv_dir_far.x;
+    let y = origin.to_plane(ray, far_y, 1) * ray.inv_dir_far.y;
+    let z = origin.to_plane(ray, far_z, 2) * ray.inv_dir_far.z;
+    let t_far = x.min(y).min(z.min(to));
     (t_near, t_far)
 }

@@ -3,7 +3,7 @@
 mod packet;
 
 pub use crate::lanes::Width;
-pub use packet::{Packet, SlabForm};
+pub use packet::{Packet, SharedOrigin, SlabForm};
 
 use crate::Error;
 use crate::geometry::{HitBatch, RayBatch};

@@ -4,12 +4,12 @@ use super::{BitVec, Context, Method};
 use crate::Error;
 use crate::bvh::Bvh;
 use crate::geometry::moller_trumbore::{self, Candidate};
-use crate::geometry::slab::{self, Near};
+use crate::geometry::slab::{self, Near, Origin, PerRay, Shared};
 use crate::geometry::{Hit, HitBatch, HitBlock, Packet as Rays, RayBatch, RayBlock};
 use crate::lanes::{self, Lanes, Width};
 use crate::parallel::portions;
 use crate::stats::{Count, Counters, NoCount};
-use simd::{Float, Level, Mask, Vector};
+use simd::{Float, Isa, Level, Mask, Vector};
 use std::ops::Add;
 
 /// How a packet's box test becomes one answer. Both find the same hits.
@@ -23,6 +23,19 @@ pub enum SlabForm {
     Conservative,
 }
 
+/// Whether packets make use of it that all rays of a batch start at one point. Both ways find the same hits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SharedOrigin {
+    /// Where it is known of the batch ([`RayBatch::origin`]) and was measured to pay: for packets wider than the level's
+    /// registers, and in emulation.
+    #[default]
+    Auto,
+    /// Wherever it is known of the batch.
+    Always,
+    /// Never: each ray brings its own origin.
+    Never,
+}
+
 /// Packet traversal of a [`Bvh`].
 #[derive(Debug, Clone, Copy)]
 pub struct Packet<'a> {
@@ -30,13 +43,20 @@ pub struct Packet<'a> {
     level: Level,
     width: usize,
     form: SlabForm,
+    shared_origin: SharedOrigin,
 }
 
 impl<'a> Packet<'a> {
     /// Over a tree, at a level, `width` rays at a time.
     #[must_use]
     pub fn new(bvh: &'a Bvh, level: Level, width: Width) -> Self {
-        Self { bvh, level, width: width.lanes(level), form: SlabForm::default() }
+        Self {
+            bvh,
+            level,
+            width: width.lanes(level),
+            form: SlabForm::default(),
+            shared_origin: SharedOrigin::default(),
+        }
     }
 
     /// With this form of the slab test.
@@ -45,17 +65,35 @@ impl<'a> Packet<'a> {
         Self { form, ..self }
     }
 
+    /// With this use of shared origins.
+    #[must_use]
+    pub fn with_shared_origin(self, shared_origin: SharedOrigin) -> Self {
+        Self { shared_origin, ..self }
+    }
+
+    /// The origin that packets of the batch shall share, if any.
+    fn origin(&self, rays: &RayBatch) -> Option<[f32; 3]> {
+        let isa = self.level.isa();
+        let use_it = match self.shared_origin {
+            SharedOrigin::Auto => matches!(isa, Isa::Scalar | Isa::Serial) || self.width > isa.lanes(),
+            SharedOrigin::Always => true,
+            SharedOrigin::Never => false,
+        };
+        rays.origin().filter(|o| use_it && o.iter().all(|x| x.is_finite()))
+    }
+
     fn find<Q: Query>(&self, rays: &RayBatch, results: &mut [Q::Block], cx: &mut Context<'_>) -> Result<(), Error> {
         let count = cx.counters.is_some();
+        let origin = self.origin(rays);
         let portion = |_, rays: &[RayBlock], results: &mut [Q::Block]| {
             cx.check()?;
-            let Self { bvh, level, width, form } = *self;
+            let Self { bvh, level, width, form, .. } = *self;
             Ok(if count {
                 // The work is the same at every level.
                 let count = Counters::default();
-                lanes::run_scalar(width, Trace::<Q, _> { bvh, form, rays, results, count })
+                lanes::run_scalar(width, Trace::<Q, _> { bvh, form, origin, rays, results, count })
             } else {
-                lanes::run(level, width, Trace::<Q, _> { bvh, form, rays, results, count: NoCount })
+                lanes::run(level, width, Trace::<Q, _> { bvh, form, origin, rays, results, count: NoCount })
             })
         };
         let done = portions(rays.blocks(), results, portion, Counters::default, Counters::add)?;
@@ -92,6 +130,8 @@ impl Method for Packet<'_> {
 struct Trace<'a, Q: Query, C> {
     bvh: &'a Bvh,
     form: SlabForm,
+    /// Where all rays start, to be made use of.
+    origin: Option<[f32; 3]>,
     rays: &'a [RayBlock],
     results: &'a mut [Q::Block],
     count: C,
@@ -101,7 +141,17 @@ impl<Q: Query, C: Count> Lanes for Trace<'_, Q, C> {
     type Output = Counters;
 
     #[inline(always)]
-    fn run<F: Float>(mut self) -> Counters {
+    fn run<F: Float>(self) -> Counters {
+        match self.origin {
+            Some(origin) => self.trace::<F, _>(Shared(origin)),
+            None => self.trace::<F, _>(PerRay),
+        }
+    }
+}
+
+impl<Q: Query, C: Count> Trace<'_, Q, C> {
+    #[inline(always)]
+    fn trace<F: Float, O: Origin<F>>(mut self, origin: O) -> Counters {
         for (block, chunk) in lanes::chunks::<F>(self.rays.len()) {
             let ray = Rays::<F>::load(&self.rays[block], chunk);
             let mut found = Q::Found::new(&ray);
@@ -115,7 +165,7 @@ impl<Q: Query, C: Count> Lanes for Trace<'_, Q, C> {
                 let splat = |bit: usize| F::Mask::splat(octant >> bit & 1 != 0);
                 let same = rest & !((x ^ splat(0)) | (y ^ splat(1)) | (z ^ splat(2)));
                 let near = Near::of_octant(octant);
-                traverse(self.bvh, self.form, &ray.only(same), near, &mut found, &mut self.count);
+                traverse(self.bvh, self.form, &ray.only(same), origin, near, &mut found, &mut self.count);
                 rest &= !same;
             }
             found.store(&mut self.results[block], chunk);
@@ -126,10 +176,11 @@ impl<Q: Query, C: Count> Lanes for Trace<'_, Q, C> {
 
 /// The loop of section 3.3: `node + 1` after a hit, `skip` after a miss.
 #[inline(always)]
-fn traverse<F: Float, T: Found<F>, C: Count>(
+fn traverse<F: Float, O: Origin<F>, T: Found<F>, C: Count>(
     bvh: &Bvh,
     form: SlabForm,
     ray: &Rays<F>,
+    origin: O,
     near: Near,
     found: &mut T,
     count: &mut C,
@@ -137,7 +188,7 @@ fn traverse<F: Float, T: Found<F>, C: Count>(
     let mut i = 0;
     while let Some(node) = bvh.nodes.get(i) {
         count.box_test();
-        let (t_near, t_far) = slab::interval(node.planes(), ray, near, ray.t_min, found.reach());
+        let (t_near, t_far) = slab::interval(node.planes(), ray, origin, near, ray.t_min, found.reach());
         let meets = match form {
             SlabForm::Exact => t_near.le(t_far).any(),
             SlabForm::Conservative => !(t_far.lt(t_near).all() || t_far.lt(ray.t_min).all()),
@@ -146,6 +197,8 @@ fn traverse<F: Float, T: Found<F>, C: Count>(
             i = node.skip() as usize;
             continue;
         }
+        // Where the walk comes after this subtree.
+        simd::prefetch(&bvh.nodes, node.skip() as usize);
         i += 1;
         let (first, number) = node.triangles();
         if number == 0 {
@@ -154,7 +207,7 @@ fn traverse<F: Float, T: Found<F>, C: Count>(
         let first = first as usize;
         for triangle in &bvh.triangles[first..first + number as usize] {
             count.triangle_test();
-            if let Some(hit) = moller_trumbore::intersect(triangle, ray, near) {
+            if let Some(hit) = moller_trumbore::intersect(triangle, ray, origin, near) {
                 count.triangle_hit();
                 found.accept(triangle.id, hit);
             }
