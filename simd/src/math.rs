@@ -100,7 +100,7 @@ fn exp2_of_parts<F: Float>(n: F::Int, fraction: F) -> F {
     // (2^x - 1) / x: minimax, absolute error of x times it below 2^-28.
     let q = polynomial(
         fraction,
-        [0.693_147_2, 0.240_226_5, 0.055_503_394, 0.009_618_012, 0.001_339_691_3, 0.000_154_744_1],
+        [std::f32::consts::LN_2, 0.240_226_5, 0.055_503_394, 0.009_618_012, 0.001_339_691_3, 0.000_154_744_1],
     );
     let power = F::splat(1.0) + fraction * q;
     // In two steps, both of them normal numbers: the first product is exact, the second rounds if the result is denormal.
@@ -141,7 +141,7 @@ fn log2_of_finite<F: Float>(x: F) -> Double<F> {
     let q = polynomial(z.hi, [0.577_079_83, 0.411_881_42, 0.337_151_1]);
     let inner = Double::sum(F::splat(0.961_796_7), z.hi * q).plus_small(F::splat(-7.028_462e-9));
     let outer = z.times(inner);
-    let outer = Double::sum(F::splat(2.885_390_0), outer.hi).plus_small(outer.lo + F::splat(3.851_926e-8));
+    let outer = Double::sum(F::splat(2.885_39), outer.hi).plus_small(outer.lo + F::splat(3.851_926e-8));
     let log = s.times(outer);
     let sum = Double::sum(exponent, log.hi);
     Double::sum(sum.hi, sum.lo + log.lo)

@@ -72,7 +72,7 @@ mod x86_64 {
     fn mixed<F: Float>(a: F, b: F, c: F) -> F {
         let larger = F::select(a.lt(b), b, a);
         let (i, j) = (a.to_int() + F::Int::from_uint(b.to_bits()), c.to_int());
-        let integer = F::from_int(i.max(j) * (i - j).min(i) ^ (i >> 3));
+        let integer = F::from_int((i.max(j) * (i - j).min(i)) ^ (i >> 3));
         (a * b + c) / larger.sqrt() - F::select(i.lt(j), integer, -c)
     }
 

@@ -46,16 +46,14 @@ macro_rules! at_width {
     };
 }
 
-/// Up to three arguments of an operation, a vector of bit patterns each. Narrow vectors are the first lanes.
-pub type Arguments = [[u32; 16]; 3];
+/// The bit patterns of a vector; a narrow one has the first lanes.
+pub type Lanes = [u32; 16];
+
+/// An operation, on up to three arguments, at a level and width.
+pub type Run<'a> = &'a dyn Fn(Level, Width, &[Lanes; 3], &mut Lanes);
 
 /// Runs the operation everywhere on all inputs and compares every lane with what is expected of (fused, its arguments).
-pub fn check(
-    arity: usize,
-    run: &dyn Fn(Level, Width, &Arguments, &mut [u32; 16]),
-    same: fn(u32, u32) -> bool,
-    expected: &dyn Fn(bool, [u32; 3]) -> u32,
-) {
+pub fn check(arity: usize, run: Run<'_>, same: fn(u32, u32) -> bool, expected: &dyn Fn(bool, [u32; 3]) -> u32) {
     let rows = values::rows(arity);
     let of_all = |fused| rows.iter().map(|&row| expected(fused, row)).collect::<Vec<_>>();
     let expected = [of_all(false), of_all(true)];
@@ -104,7 +102,7 @@ macro_rules! operations {
         }
 
         #[inline(always)]
-        fn body<F: simd::Float>(operation: Operation, arguments: &$crate::harness::Arguments, out: &mut [u32; 16]) {
+        fn body<F: simd::Float>(operation: Operation, arguments: &[$crate::harness::Lanes; 3], out: &mut $crate::harness::Lanes) {
             use simd::Vector;
             let [a, b, c] = arguments;
             let arguments = [F::Index::load(a), F::Index::load(b), F::Index::load(c)];
@@ -121,7 +119,7 @@ macro_rules! operations {
         simd::kernel! {
             fn run<S>(
                 width: $crate::harness::Width, operation: Operation,
-                arguments: &$crate::harness::Arguments, out: &mut [u32; 16]
+                arguments: &[$crate::harness::Lanes; 3], out: &mut $crate::harness::Lanes
             ) {
                 at_width!(S, width, body(operation, arguments, out))
             }

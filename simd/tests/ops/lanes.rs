@@ -85,9 +85,9 @@ fn check_reductions<L: AnyLane>(patterns: &[u32; 16], mask: u32) -> Result<(), T
         let numbers = &numbers[..width.lanes()];
         let (min, max, min_index) = L::run(level, width, Reduce(numbers, mask));
         let place = format!("{level}, {numbers:?}, mask {mask:x}");
-        prop_assert_eq!(min.bits(), tree(numbers, |a, b| if a < b { a } else { b }).bits(), "reduce_min, {place}");
-        prop_assert_eq!(max.bits(), tree(numbers, |a, b| if a > b { a } else { b }).bits(), "reduce_max, {place}");
-        prop_assert_eq!(min_index, first_smallest(numbers, mask), "min_index, {place}");
+        prop_assert_eq!(min.bits(), tree(numbers, |a, b| if a < b { a } else { b }).bits(), "reduce_min, {}", place);
+        prop_assert_eq!(max.bits(), tree(numbers, |a, b| if a > b { a } else { b }).bits(), "reduce_max, {}", place);
+        prop_assert_eq!(min_index, first_smallest(numbers, mask), "min_index, {}", place);
     }
     Ok(())
 }
