@@ -7,6 +7,12 @@
 //! | [`pow`] | 1.31 ulp | 4 * 10^8 random pairs, many of them with `x` near 1, results over the whole range |
 //!
 //! One ulp is one unit in the last place of the exact result, 2^-149 where that is denormal.
+//!
+//! ```
+//! use simd::math::{log2, pow};
+//! assert_eq!(pow(2.0_f32, 10.0), 1024.0);
+//! assert_eq!(log2(1024.0_f32), 10.0);
+//! ```
 
 use crate::{Float, Int, Vector};
 
@@ -151,7 +157,9 @@ fn log2_of_finite<F: Float>(x: F) -> Double<F> {
 #[inline(always)]
 fn polynomial<F: Float, const N: usize>(x: F, c: [f32; N]) -> F {
     let mut sum = F::splat(c[N - 1]);
-    for i in (0..N - 1).rev() {
+    let mut i = N - 1;
+    while i > 0 {
+        i -= 1;
         sum = sum * x + F::splat(c[i]);
     }
     sum
@@ -177,8 +185,8 @@ impl<F: Float> Double<F> {
     #[inline(always)]
     fn product(a: F, b: F) -> Self {
         // 12 bits above and 12 below: the products of such halves are exact.
-        let upper = |x: F| F::from_bits(x.to_bits() & F::Index::splat(0xffff_f000));
-        let (a1, b1) = (upper(a), upper(b));
+        let upper = F::Index::splat(0xffff_f000);
+        let (a1, b1) = (F::from_bits(a.to_bits() & upper), F::from_bits(b.to_bits() & upper));
         let (a2, b2) = (a - a1, b - b1);
         let hi = a * b;
         Self { hi, lo: a2 * b2 + (a2 * b1 + (a1 * b2 + (a1 * b1 - hi))) }

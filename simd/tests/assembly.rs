@@ -1,10 +1,10 @@
-//! The machine code of two kernels at each level: packed instructions of the level's registers and no call in the loop; and
+//! The machine code of a few kernels at each level: packed instructions of the level's registers and no call in the loop; and
 //! no packed arithmetic at all at level serial, the honest emulation.
 //!
 //! The code is found in this executable by markers: a `nop` with a number no one else uses, before the loop and behind it.
-//! Names would not do: the function that a kernel is compiled to at a level is always called `run`, inlined into its caller
-//! or not, and some formats of executables have no names at all. The markers may touch memory as far as the compiler knows,
-//! so no load or store, and hence no arithmetic on what is loaded, can be moved across them.
+//! Names would not do: at each level the function is called `run`, and some formats of executables have no names at all. The
+//! markers may touch memory as far as the compiler knows, so no load or store, and hence no arithmetic on what is loaded, can
+//! be moved across them. From the first marker on, the jumps are followed: the compiler puts blocks where it likes.
 
 #[cfg(not(target_arch = "x86_64"))]
 #[test]
@@ -16,13 +16,16 @@ fn assembly() {
 mod x86_64 {
     use iced_x86::{Decoder, DecoderOptions, FlowControl, Instruction, Register};
     use object::{Object, ObjectSection, SectionKind};
-    use simd::{Block, Float, Int, Isa, Level, Mask, Simd, Vector};
-    use std::ops::Range;
+    use simd::{Block, Float, Int, Isa, Level, Mask, Simd, Vector, math};
+    use std::collections::{BTreeMap, BTreeSet};
+    use std::hint::black_box;
 
     // ---- The kernels ----
 
     const SLAB: i32 = 0x5eed_0000;
     const ELEMENTWISE: i32 = 0x5eed_1000;
+    const POWER: i32 = 0x5eed_2000;
+    const COUNT: i32 = 0x5eed_3000;
     const END: i32 = 0x100;
 
     const fn marker<S: Simd>(kernel: i32) -> i32 {
@@ -91,49 +94,115 @@ mod x86_64 {
         }
     }
 
+    simd::kernel! {
+        fn power<S>(exponent: f32, numbers: &mut [Block<f32>]) {
+            mark!(marker::<S>(POWER));
+            for block in numbers {
+                for chunk in 0..16 / S::Float::LANES {
+                    let x = S::Float::load_block(block, chunk);
+                    math::pow(x, S::Float::splat(exponent)).store_block(block, chunk);
+                }
+            }
+            mark!(marker::<S>(POWER) + END);
+        }
+    }
+
+    simd::kernel! {
+        /// How many numbers are in a range, nothing but loads and comparisons.
+        fn count<S>(numbers: &[Block<f32>], low: f32, high: f32) -> usize {
+            mark!(marker::<S>(COUNT));
+            let (low, high) = (S::Float::splat(low), S::Float::splat(high));
+            let mut count = 0;
+            for block in numbers {
+                for chunk in 0..16 / S::Float::LANES {
+                    let x = S::Float::load_block(block, chunk);
+                    count += (low.le(x) & x.le(high)).count();
+                }
+            }
+            mark!(marker::<S>(COUNT) + END);
+            count
+        }
+    }
+
     /// Calls the kernels at every level, with which they are in the executable; and they do what they say.
     fn kernels_work(level: Level) {
         let planes = |x: f32| Block(std::array::from_fn(|i| x + i as f32));
-        // Unit cubes along the diagonal; the ray flies in x at y = z = 3.5, from behind the cube at 3 or not.
-        let boxes = [[0.0, 0.0, 0.0, 1.0, 1.0, 1.0].map(planes); 2];
+        // Unit cubes along the diagonal; the ray flies in x at y = z = 3.5, from behind the cube at 3 or not. The compiler
+        // must not know how many there are.
+        let boxes = black_box(vec![[0.0, 0.0, 0.0, 1.0, 1.0, 1.0].map(planes); 2]);
         for (x, expected) in [(0.0, 1 << 3), (5.0, 0)] {
             let mut hits = [0; 2];
             slab(level, &boxes, &[x, 3.5, 3.5], &[1.0, 1e30, 1e30], 100.0, &mut hits);
             assert_eq!(hits, [expected; 2], "{level}");
         }
+        let inputs = black_box(vec![[Block([2.0; 16]), Block([8.0; 16]), Block([1.5; 16])]; 2]);
         let mut outputs = [Block::default(); 2];
-        elementwise(level, &[[Block([2.0; 16]), Block([8.0; 16]), Block([1.5; 16])]; 2], &mut outputs);
+        elementwise(level, &inputs, &mut outputs);
         assert_eq!(outputs, [Block([mixed(2.0, 8.0, 1.5); 16]); 2], "{level}");
+        let mut powers = black_box(vec![Block([3.0; 16]); 2]);
+        power(level, 2.0, &mut powers);
+        assert_eq!(powers, [Block([9.0; 16]); 2], "{level}");
+        let numbers = black_box(vec![planes(0.0), planes(4.0)]);
+        assert_eq!(count(level, &numbers, 5.0, 6.5), 4, "{level}");
     }
 
     // ---- Their code ----
 
-    /// The instructions between the markers of a kernel: once, or more often if the compiler made copies.
-    fn code(text: &[u8], kernel: i32, isa: Isa) -> Vec<Vec<Instruction>> {
-        let first = kernel + isa as i32;
-        let positions = |number: i32| {
-            let nop: Vec<u8> = [0x0f, 0x1f, 0x80].into_iter().chain(number.to_le_bytes()).collect();
-            text.windows(nop.len()).enumerate().filter(move |(_, w)| *w == nop).map(|(at, _)| at)
-        };
-        positions(first)
-            .map(|begin| {
-                let end = positions(first + END).find(|&end| end > begin);
-                let end = end.expect("the end of the kernel follows its beginning");
-                Decoder::with_ip(64, &text[begin..end], begin as u64, DecoderOptions::NONE).into_iter().collect()
-            })
-            .collect()
+    /// Where the marker with this number is: once, or more often if the compiler made copies.
+    fn positions(text: &[u8], number: i32) -> Vec<u64> {
+        let nop: Vec<u8> = [0x0f, 0x1f, 0x80].into_iter().chain(number.to_le_bytes()).collect();
+        text.windows(nop.len()).enumerate().filter(|(_, w)| *w == nop).map(|(at, _)| at as u64).collect()
     }
 
-    /// From the targets of jumps backward to the jumps.
-    fn loops(code: &[Instruction]) -> Vec<&[Instruction]> {
-        let is_jump = |i: &Instruction| {
-            matches!(i.flow_control(), FlowControl::ConditionalBranch | FlowControl::UnconditionalBranch)
-        };
-        let range = |(at, jump): (usize, &Instruction)| -> Option<Range<usize>> {
-            let target = code[..=at].iter().position(|i| i.ip() == jump.near_branch_target());
-            target.filter(|_| is_jump(jump)).map(|target| target..at + 1)
-        };
-        code.iter().enumerate().filter_map(range).map(|range| &code[range]).collect()
+    /// Instructions by their address, and the addresses where execution may go on.
+    struct Code(BTreeMap<u64, (Instruction, Vec<u64>)>);
+
+    impl Code {
+        /// What can be executed from `begin` on, until one of the ends.
+        fn from(text: &[u8], begin: u64, ends: &[u64]) -> Self {
+            let mut code = BTreeMap::new();
+            let mut todo = vec![begin];
+            while let Some(ip) = todo.pop() {
+                let Some(bytes) = text.get(ip as usize..).filter(|_| !code.contains_key(&ip)) else { continue };
+                let instruction = Decoder::with_ip(64, bytes, ip, DecoderOptions::NONE).decode();
+                let (next, target) = (instruction.next_ip(), instruction.near_branch_target());
+                let next = match instruction.flow_control() {
+                    _ if ends.contains(&ip) => vec![],
+                    FlowControl::Next | FlowControl::Call | FlowControl::IndirectCall => vec![next],
+                    FlowControl::ConditionalBranch => vec![next, target],
+                    FlowControl::UnconditionalBranch => vec![target],
+                    _ => vec![],
+                };
+                todo.extend(&next);
+                code.insert(ip, (instruction, next));
+            }
+            Self(code)
+        }
+
+        /// Whether execution can get from one of these addresses to one of those.
+        fn reaches(&self, from: &[u64], to: &[u64]) -> bool {
+            let (mut todo, mut seen) = (from.to_vec(), BTreeSet::new());
+            while let Some(ip) = todo.pop() {
+                if to.contains(&ip) {
+                    return true;
+                }
+                if let Some((_, next)) = self.0.get(&ip).filter(|_| seen.insert(ip)) {
+                    todo.extend(next);
+                }
+            }
+            false
+        }
+
+        /// The instructions that may be followed by one of the ends, unlike what comes after a panic.
+        fn before(&self, ends: &[u64]) -> Vec<Instruction> {
+            self.0.iter().filter(|(ip, _)| self.reaches(&[**ip], ends)).map(|(_, (i, _))| *i).collect()
+        }
+
+        /// Those of the instructions that may be followed by themselves.
+        fn repeated(&self, instructions: &[Instruction]) -> Vec<Instruction> {
+            let repeats = |i: &&Instruction| self.reaches(&self.0[&i.ip()].1, &[i.ip()]);
+            instructions.iter().filter(repeats).copied().collect()
+        }
     }
 
     fn name(instruction: &Instruction) -> String {
@@ -154,16 +223,13 @@ mod x86_64 {
         code.iter().map(|i| format!("{:x}: {}\n", i.ip(), name(i))).collect()
     }
 
-    fn check(isa: Isa, kernel: i32, code: &[Instruction], expected: &[&str]) {
-        let context = |code: &[Instruction]| format!("{isa}, kernel {kernel:x}:\n{}", listing(code));
-        let loops = loops(code);
-        assert!(!loops.is_empty(), "no loop: {}", context(code));
-        for body in &loops {
-            let calls = body.iter().any(|i| matches!(i.flow_control(), FlowControl::Call | FlowControl::IndirectCall));
-            assert!(!calls, "a call in the loop: {}", context(body));
-        }
-        let fused = code.iter().find(|i| name(i).starts_with("vfm") || name(i).starts_with("vfnm"));
-        assert!(fused.is_none(), "fused: {}", context(code));
+    fn check(isa: Isa, kernel: i32, code: &[Instruction], body: &[Instruction], expected: &[&str]) {
+        let context = format!("{isa}, kernel {kernel:x}:\n{}in the loop:\n{}", listing(code), listing(body));
+        assert!(!body.is_empty(), "no loop: {context}");
+        let calls = body.iter().any(|i| matches!(i.flow_control(), FlowControl::Call | FlowControl::IndirectCall));
+        assert!(!calls, "a call in the loop: {context}");
+        let fused = code.iter().any(|i| name(i).starts_with("vfm") || name(i).starts_with("vfnm"));
+        assert!(!fused, "fused: {context}");
 
         let is_wide: fn(Register) -> bool = match isa {
             Isa::Sse2 | Isa::Sse42 => Register::is_xmm,
@@ -171,7 +237,7 @@ mod x86_64 {
             Isa::Avx512 => Register::is_zmm,
             Isa::Serial => {
                 let packed: Vec<Instruction> = code.iter().copied().filter(is_packed_arithmetic).collect();
-                assert!(packed.is_empty(), "packed arithmetic: {}in {}", listing(&packed), context(code));
+                assert!(packed.is_empty(), "packed arithmetic: {}in {context}", listing(&packed));
                 return;
             }
             _ => return,
@@ -180,10 +246,10 @@ mod x86_64 {
         for op in expected {
             let op = format!("{prefix}{op}");
             let uses = |i: &Instruction| name(i) == op && (0..i.op_count()).any(|k| is_wide(i.op_register(k)));
-            assert!(loops.iter().any(|body| body.iter().any(uses)), "no {op} in the loop: {}", context(code));
+            assert!(body.iter().any(uses), "no {op} in the loop: {context}");
         }
-        let vex = code.iter().find(|i| name(i).starts_with('v')).filter(|_| prefix.is_empty());
-        assert!(vex.is_none(), "AVX instructions: {}", context(code));
+        let vex = prefix.is_empty() && code.iter().any(|i| name(i).starts_with('v'));
+        assert!(!vex, "AVX instructions: {context}");
     }
 
     #[test]
@@ -199,12 +265,21 @@ mod x86_64 {
             for (kernel, expected) in [
                 (SLAB, &["subps", "mulps", "minps", "maxps", "cmpps"][..]),
                 (ELEMENTWISE, &["addps", "subps", "mulps", "divps", "sqrtps", "cmpps", "cvtdq2ps"]),
+                (POWER, &["addps", "subps", "mulps", "divps", "cmpps", "cvtdq2ps"]),
+                (COUNT, &["cmpps"]),
             ] {
-                let copies: Vec<_> = text.iter().flat_map(|text| code(text, kernel, isa)).collect();
-                assert!(!copies.is_empty(), "{isa}: kernel {kernel:x} was not found");
-                for copy in copies {
-                    check(isa, kernel, &copy, expected);
+                let mut copies = 0;
+                for text in &text {
+                    let (first, last) = (kernel + isa as i32, kernel + isa as i32 + END);
+                    let ends = positions(text, last);
+                    for begin in positions(text, first) {
+                        copies += 1;
+                        let all = Code::from(text, begin, &ends);
+                        let code = all.before(&ends);
+                        check(isa, kernel, &code, &all.repeated(&code), expected);
+                    }
                 }
+                assert!(copies > 0, "{isa}: kernel {kernel:x} was not found");
             }
         }
     }

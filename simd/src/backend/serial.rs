@@ -56,7 +56,13 @@ mod fences {
     fence!(Wrapping<u32>, reg, "/* {0:e} */", x: x.0);
 }
 
-/// A one-lane vector whose every result is fenced.
+/// What a comparison found, fenced: its lane as `u32`.
+#[inline(always)]
+fn fenced(mask: bool) -> bool {
+    Wrapping(u32::from(mask)).fence().0 & 1 != 0
+}
+
+/// A one-lane vector whose every result is fenced, and all that is loaded.
 #[derive(Debug, Clone, Copy)]
 #[repr(transparent)]
 pub struct Fenced<V>(V);
@@ -127,7 +133,7 @@ impl<V: Fence> Vector for Fenced<V> {
     }
     #[inline(always)]
     fn load(src: &[V::Lane]) -> Self {
-        Self(V::load(src))
+        Self(V::load(src).fence())
     }
     #[inline(always)]
     fn store(self, dst: &mut [V::Lane]) {
@@ -135,7 +141,7 @@ impl<V: Fence> Vector for Fenced<V> {
     }
     #[inline(always)]
     fn load_block(block: &Block<V::Lane>, chunk: usize) -> Self {
-        Self(V::load_block(block, chunk))
+        Self(V::load_block(block, chunk).fence())
     }
     #[inline(always)]
     fn store_block(self, block: &mut Block<V::Lane>, chunk: usize) {
@@ -148,7 +154,7 @@ impl<V: Fence> Vector for Fenced<V> {
     #[inline(always)]
     fn load_rows4(rows: &[[V::Lane; 4]]) -> [Self; 4] {
         let [a, b, c, d] = V::load_rows4(rows);
-        [Self(a), Self(b), Self(c), Self(d)]
+        [Self(a.fence()), Self(b.fence()), Self(c.fence()), Self(d.fence())]
     }
     #[inline(always)]
     fn store_rows4([a, b, c, d]: [Self; 4], rows: &mut [[V::Lane; 4]]) {
@@ -160,15 +166,15 @@ impl<V: Fence> Vector for Fenced<V> {
     }
     #[inline(always)]
     fn eq(self, other: Self) -> bool {
-        self.0.eq(other.0)
+        fenced(self.0.eq(other.0))
     }
     #[inline(always)]
     fn lt(self, other: Self) -> bool {
-        self.0.lt(other.0)
+        fenced(self.0.lt(other.0))
     }
     #[inline(always)]
     fn le(self, other: Self) -> bool {
-        self.0.le(other.0)
+        fenced(self.0.le(other.0))
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {

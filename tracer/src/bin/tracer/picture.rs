@@ -1,0 +1,71 @@
+//! Pictures as files.
+
+use std::io::{self, Cursor};
+use std::path::{Path, PathBuf};
+use tracer::Error;
+use tracer::output::write_atomically;
+use tracer::render::Image;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// sRGB, 8 bits per channel.
+    Png,
+    /// Linear, 32-bit floats.
+    Exr,
+}
+
+impl Kind {
+    /// As the name of the file says.
+    pub fn of(path: &Path) -> Result<Self, Error> {
+        match path.extension().map(|e| e.to_ascii_lowercase()).as_ref().and_then(|e| e.to_str()) {
+            Some("png") => Ok(Self::Png),
+            Some("exr") => Ok(Self::Exr),
+            _ => Err(Error::Usage(format!("{}: give a picture that ends in .png or .exr", path.display()))),
+        }
+    }
+
+    /// The whole file.
+    pub fn encode(self, image: &Image) -> io::Result<Vec<u8>> {
+        match self {
+            Self::Png => png(image),
+            Self::Exr => exr(image),
+        }
+    }
+}
+
+/// Encodes in memory, then writes whole or not at all. Returns the size of the file.
+pub fn write(image: &Image, path: &Path) -> Result<usize, Error> {
+    let kind = Kind::of(path)?;
+    let encoded = kind.encode(image);
+    let bytes = encoded.map_err(|source| Error::Io { action: "encode", path: PathBuf::from(path), source })?;
+    write_atomically(path, |out| out.write_all(&bytes))?;
+    Ok(bytes.len())
+}
+
+fn png(image: &Image) -> io::Result<Vec<u8>> {
+    let side = |n: usize| u32::try_from(n).map_err(io::Error::other);
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, side(image.width)?, side(image.height)?);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&image.to_srgb8())?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+fn exr(image: &Image) -> io::Result<Vec<u8>> {
+    use exr::prelude::{SpecificChannels, Vec2, WritableImage};
+    let pixel = |Vec2(x, y): Vec2<usize>| {
+        let [r, g, b] = image.pixels[y * image.width + x];
+        (r, g, b)
+    };
+    let mut bytes = Vec::new();
+    let file = exr::image::Image::from_channels((image.width, image.height), SpecificChannels::rgb(pixel));
+    match file.write().to_buffered(Cursor::new(&mut bytes)) {
+        Ok(()) => Ok(bytes),
+        Err(exr::error::Error::Io(e)) => Err(e),
+        Err(e) => Err(io::Error::other(e)),
+    }
+}

@@ -1,0 +1,168 @@
+//! `tracer render`: a picture of a scene.
+
+use crate::args::{self, BuildOptions, PictureOptions, TraceOptions};
+use crate::console::Console;
+use crate::picture;
+use crate::workload::{Workload, mrays_per_s, ms};
+use indicatif::{HumanBytes, HumanCount};
+use serde::Serialize;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+use tracer::Error;
+use tracer::method::Context;
+use tracer::progress::Progress;
+use tracer::render::{Frame, Settings};
+
+/// Render a scene to a picture
+#[derive(Debug, Default, clap::Args)]
+#[command(after_help = "\
+Examples:
+  tracer render                                     the built-in sphereflake to balls.png
+  tracer render atrium.obj.zst --size 1920x1080 --camera -60,86,10/0,40,0 --shadows
+  tracer render tree:8 -o tree.exr --level sse2 --width 4 --threads 1 --json")]
+pub struct Args {
+    /// A file or a built-in scene [default: balls]
+    scene: Option<String>,
+    /// File to write: .png (sRGB, 8 bits) or .exr (linear, 32-bit floats) [default: the scene's name with .png]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Print the summary as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    picture: PictureOptions,
+    #[command(flatten)]
+    build: BuildOptions,
+    #[command(flatten)]
+    trace: TraceOptions,
+}
+
+#[derive(Serialize)]
+struct Report {
+    scene: String,
+    triangles: usize,
+    nodes: usize,
+    build: &'static str,
+    load_ms: f64,
+    build_ms: f64,
+    width: usize,
+    height: usize,
+    camera: String,
+    shadows: bool,
+    level: String,
+    packet: usize,
+    threads: usize,
+    eye_ms: f64,
+    cast_ms: f64,
+    shade_ms: f64,
+    total_ms: f64,
+    rays: usize,
+    mrays_per_s: f64,
+    hits: usize,
+    hits_hash: String,
+    image_hash: String,
+    output: PathBuf,
+    output_bytes: usize,
+}
+
+pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
+    // What can be known to be wrong is told before the long work.
+    if let Some(path) = &args.output {
+        picture::Kind::of(path)?;
+    }
+    args.trace.level.choose()?;
+    args.build.config()?;
+    args.picture.size.check()?;
+    let pool = args::pool(args.trace.threads.threads)?;
+    pool.install(|| {
+        let work = Workload::load(args.scene.as_deref().unwrap_or("balls"), &args.build, console)?;
+        picture(args, &work, console)
+    })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Renders, writes and reports, on the current rayon pool.
+pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Error> {
+    let (level, _) = args.trace.level.choose()?;
+    let size = args.picture.size;
+    let scene = &work.scene;
+    let camera = args.picture.camera.unwrap_or_else(|| scene.camera_or_default());
+    let (lanes, shadows) = (args.trace.width, args.picture.shadows);
+    let settings = Settings { width: size.width, height: size.height, level, lanes, shadows };
+    let method = args.trace.method(&work.bvh, level);
+    let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
+
+    console.stage("render", 3);
+    let mut frame = Frame::new(scene, &work.surfaces, camera, settings);
+    let ((), eye_ms) = timed(|| frame.eye_rays());
+    console.advance(1);
+    let (cast, cast_ms) = timed(|| frame.cast(&method, &mut cx));
+    cast?;
+    console.advance(1);
+    let (image, shade_ms) = timed(|| frame.shade(&cx));
+    let image = image?;
+    console.advance(1);
+    let hits = frame.hits().iter().filter(|h| !h.is_miss()).count();
+    let hits_hash = format!("{:016x}", frame.hits().hash());
+
+    let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
+    console.check()?;
+    let output_bytes = picture::write(&image, &output)?;
+    let rays = size.pixels() + if shadows { hits * scene.lights_or_headlight(&camera).len() } else { 0 };
+    let report = Report {
+        scene: scene.name.clone(),
+        triangles: scene.mesh.triangles.len(),
+        nodes: work.bvh.nodes.len(),
+        build: work.build,
+        load_ms: work.load_ms,
+        build_ms: work.build_ms,
+        width: size.width,
+        height: size.height,
+        camera: camera.to_string(),
+        shadows,
+        level: level.to_string(),
+        packet: lanes.lanes(level),
+        threads: rayon::current_num_threads(),
+        eye_ms,
+        cast_ms,
+        shade_ms,
+        total_ms: eye_ms + cast_ms + shade_ms,
+        rays,
+        mrays_per_s: mrays_per_s(rays, cast_ms),
+        hits,
+        hits_hash,
+        image_hash: format!("{:016x}", image.hash()),
+        output,
+        output_bytes,
+    };
+    if args.json { console.print_json(&report) } else { console.print(&text(&report)) }
+}
+
+fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
+    let start = Instant::now();
+    let result = work();
+    (result, ms(start.elapsed()))
+}
+
+fn text(r: &Report) -> String {
+    let [triangles, nodes, rays] = [r.triangles, r.nodes, r.rays].map(|n| HumanCount(n as u64).to_string());
+    let shadows = if r.shadows { " and shadow" } else { "" };
+    let covered = 100.0 * r.hits as f64 / (r.width * r.height) as f64;
+    let (output, bytes) = (r.output.display(), HumanBytes(r.output_bytes as u64));
+    let Report { scene, load_ms, build, build_ms, camera, width, height, level, packet, threads, .. } = r;
+    let Report { eye_ms, cast_ms, shade_ms, total_ms, mrays_per_s, .. } = r;
+    format!(
+        "\
+scene     {scene}, {triangles} triangles, read in {load_ms:.0} ms
+tree      {build}, {nodes} nodes, built in {build_ms:.0} ms
+camera    {camera}
+rendered  {width}x{height}, level {level}, {packet} rays at a time, threads: {threads}; {covered:.1} % of the picture is covered
+  eye rays {eye_ms:>9.2} ms
+  casting  {cast_ms:>9.2} ms, {mrays_per_s:.2} Mrays/s ({rays} eye{shadows} rays)
+  shading  {shade_ms:>9.2} ms
+  total    {total_ms:>9.2} ms
+wrote     {output}, {bytes}
+"
+    )
+}

@@ -1,0 +1,99 @@
+//! Scenes made ready to be traced.
+
+use crate::args::BuildOptions;
+use crate::console::Console;
+use crate::machine;
+use std::time::{Duration, Instant};
+use tracer::Error;
+use tracer::bvh::Bvh;
+use tracer::progress::Progress;
+use tracer::render::Surfaces;
+use tracer::scene::{Builtin, Mesh, Scene};
+
+/// A scene with its tree.
+pub struct Workload {
+    pub scene: Scene,
+    pub surfaces: Surfaces,
+    pub bvh: Bvh,
+    /// The builder's name.
+    pub build: &'static str,
+    pub load_ms: f64,
+    pub build_ms: f64,
+}
+
+impl Workload {
+    /// On the current rayon pool.
+    pub fn load(spec: &str, options: &BuildOptions, console: &Console) -> Result<Self, Error> {
+        let (scene, load_ms) = open(spec, console)?;
+        let (bvh, build_ms) = build(&scene.mesh, options, console)?;
+        scene.validate()?;
+        let surfaces = Surfaces::new(&scene);
+        Ok(Self { scene, surfaces, bvh, build: options.name(), load_ms, build_ms })
+    }
+}
+
+/// The scene that the user names, and the milliseconds it took; passes warnings on.
+pub fn open(spec: &str, console: &Console) -> Result<(Scene, f64), Error> {
+    let (name, size) = spec.split_once(':').unwrap_or((spec, ""));
+    if let Some(which) = Builtin::ALL.into_iter().find(|b| b.name() == name) {
+        check_size(which, size.parse().unwrap_or_else(|_| which.default_size()))?;
+        console.stage("generate", 0);
+    }
+    let start = Instant::now();
+    let (scene, warnings) = Scene::open(spec, console)?;
+    warnings.iter().for_each(|w| console.warn(w));
+    Ok((scene, ms(start.elapsed())))
+}
+
+/// Refuses a built-in scene that does not fit into memory.
+pub fn check_size(which: Builtin, size: u32) -> Result<(), Error> {
+    // Vertices, normals and indices; the tree and its triangles; what is needed to build it.
+    const BYTES_PER_TRIANGLE: u64 = 300;
+    let Some(triangles) = which.triangles(size) else { return Ok(()) };
+    machine::check_memory(BYTES_PER_TRIANGLE * triangles as u64, &format!("{}:{size}", which.name()))
+}
+
+/// The tree over a mesh, and the milliseconds it took.
+pub fn build(mesh: &Mesh, options: &BuildOptions, console: &Console) -> Result<(Bvh, f64), Error> {
+    let config = options.config()?;
+    let start = Instant::now();
+    let bvh = Bvh::build(mesh, &config, console)?;
+    let build_ms = ms(start.elapsed());
+    console.clear();
+    Ok((bvh, build_ms))
+}
+
+/// Milliseconds.
+pub fn ms(time: Duration) -> f64 {
+    1e3 * time.as_secs_f64()
+}
+
+/// Millions of rays per second.
+pub fn mrays_per_s(rays: usize, ms: f64) -> f64 {
+    if ms > 0.0 { rays as f64 / ms / 1e3 } else { 0.0 }
+}
+
+/// The middle of a number of measurements; the mean of the middle two when their number is even.
+pub fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    let n = times.len();
+    if n == 0 { 0.0 } else { 0.5 * (times[(n - 1) / 2] + times[n / 2]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(vec![]), 0.0);
+        assert_eq!(median(vec![3.0, 1.0, 50.0]), 3.0);
+        assert_eq!(median(vec![4.0, 1.0, 2.0, 9.0]), 3.0);
+    }
+
+    #[test]
+    fn rays_per_second() {
+        assert_eq!(mrays_per_s(3_000_000, 1500.0), 2.0);
+        assert_eq!(mrays_per_s(0, 0.0), 0.0);
+    }
+}
