@@ -2,6 +2,11 @@
 
 pub mod brute_force;
 
+/// The README's Rust, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+struct Readme;
+
 use std::path::{Path, PathBuf};
 
 /// The file of a real scene (`conference`, `crytek_sponza`, `country_kitchen`): `NAME.obj.zst` in the folder that the

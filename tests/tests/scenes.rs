@@ -15,7 +15,7 @@ fn load(name: &str) -> Option<Scene> {
     Some(scene)
 }
 
-fn material_of<'a>(scene: &'a Scene, triangle: usize) -> &'a str {
+fn material_of(scene: &Scene, triangle: usize) -> &str {
     &scene.materials[scene.mesh.material(triangle) as usize].name
 }
 

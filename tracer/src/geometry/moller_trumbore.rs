@@ -26,7 +26,7 @@ pub(crate) fn intersect<F: Float, O: Origin<F>>(
     near: Near,
 ) -> Option<Candidate<F>> {
     let (e1, e2) = (Vec3::splat(triangle.e1), Vec3::splat(triangle.e2));
-    let (from_v0, q, distance) = origin.from_triangle(ray, triangle);
+    let (from_v0, q, distance) = origin.triangle_terms(ray, triangle);
     let p = ray.dir.cross(e2);
     // Everything times the determinant's sign; the division is left to packets that hit.
     let det = e1.dot(p);

@@ -33,7 +33,7 @@ pub(crate) trait Origin<F: Float>: Copy {
     fn to_plane(self, ray: &Packet<F>, plane: f32, axis: usize) -> F;
 
     /// `o = origin - v0`, `o x e1`, `e2 . (o x e1)`.
-    fn from_triangle(self, ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F);
+    fn triangle_terms(self, ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F);
 }
 
 /// Each ray has its own origin.
@@ -52,7 +52,7 @@ impl<F: Float> Origin<F> for PerRay {
     }
 
     #[inline(always)]
-    fn from_triangle(self, ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F) {
+    fn triangle_terms(self, ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F) {
         let o = ray.org - Vec3::splat(triangle.v0);
         let q = o.cross(Vec3::splat(triangle.e1));
         (o, q, Vec3::splat(triangle.e2).dot(q))
@@ -70,7 +70,7 @@ impl<F: Float> Origin<F> for Shared {
     }
 
     #[inline(always)]
-    fn from_triangle(self, _ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F) {
+    fn triangle_terms(self, _ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F) {
         let lanes = |[x, y, z]: [f32; 3]| Vec3::<f32> { x, y, z };
         let o = lanes(self.0) - lanes(triangle.v0);
         let q = o.cross(lanes(triangle.e1));

@@ -11,6 +11,8 @@ const TOP: f64 = 132.0;
 const BAR: f64 = 24.0;
 const STEP: f64 = 30.0;
 const GAP: f64 = 16.0;
+/// Room for what stands behind a bar.
+const LABEL: f64 = 160.0;
 const INK: &str = "#1f2933";
 const SOFT: &str = "#52606d";
 const PAPER: &str = "#f0b429";
@@ -98,21 +100,26 @@ fn axis(scale: &Scale, bottom: f64, out: &mut String) {
 
 /// Draws all bars, grouped by level; returns where they end.
 fn bars(report: &Report, scale: &Scale, out: &mut String) -> f64 {
+    let mut groups: Vec<(&str, Vec<&Row>)> = Vec::new();
+    for row in &report.rows {
+        match groups.iter_mut().find(|g| g.0 == row.level) {
+            Some(group) => group.1.push(row),
+            None => groups.push((row.level, vec![row])),
+        }
+    }
     let mut y = TOP;
-    for group in report.rows.chunk_by(|a, b| a.level == b.level) {
-        let middle = y + 0.5 * (STEP * group.len() as f64 - STEP + BAR) + 6.0;
-        let name = match group[0].level {
-            "serial" => "emulation",
-            "scalar" => "plain Rust",
-            other => other,
+    for (level, rows) in groups {
+        let name = match level {
+            "serial" => "emulation".to_owned(),
+            "scalar" => "plain Rust".to_owned(),
+            other => other.to_uppercase(),
         };
-        let name = if name.len() > 7 { name.to_owned() } else { name.to_uppercase() };
+        let (x, middle) = (LEFT - 52.0, y + 0.5 * (STEP * (rows.len() - 1) as f64 + BAR) + 6.0);
         let _ = writeln!(
             out,
-            "<text x=\"{}\" y=\"{middle}\" font-size=\"18\" font-weight=\"bold\" text-anchor=\"end\">{name}</text>",
-            LEFT - 52.0
+            "<text x=\"{x}\" y=\"{middle}\" font-size=\"18\" font-weight=\"bold\" text-anchor=\"end\">{name}</text>"
         );
-        for row in group {
+        for row in rows {
             bar(row, scale, y, out);
             y += STEP;
         }
@@ -136,7 +143,10 @@ fn bar(row: &Row, scale: &Scale, y: f64, out: &mut String) {
     let mut label = end;
     if let Some([low, high]) = row.paper_cast() {
         let (low, high) = (scale.x(low), scale.x(high));
-        label = label.max(high);
+        // Behind the band where there is no room before it.
+        if end + LABEL > low {
+            label = label.max(high);
+        }
         let _ = writeln!(
             out,
             "<rect x=\"{low:.1}\" y=\"{}\" width=\"{:.1}\" height=\"{}\" fill=\"{PAPER}\" fill-opacity=\"0.55\"/>",
@@ -164,7 +174,7 @@ fn footer(r: &Report, bottom: f64, out: &mut String) {
     let _ = writeln!(
         out,
         "<text x=\"32\" y=\"{}\" font-size=\"15\">{identical}</text>\n\
-         <text x=\"32\" y=\"{}\" font-size=\"13\" fill=\"{SOFT}\">CPU time of one thread, medians of {} rounds.</text>",
+         <text x=\"32\" y=\"{}\" font-size=\"13\" fill=\"{SOFT}\">CPU time of one thread, median of {} rounds.</text>",
         bottom + 56.0,
         bottom + 78.0,
         r.repeat

@@ -187,8 +187,8 @@ impl Task<'_> {
             load_average,
             repeat,
             measurement: format!(
-                "CPU time of one thread, all rows in turn in each round, medians of {repeat} rounds after one to warm up; \
-                 with {threads} threads the same on the clock"
+                "CPU time of one thread, all rows in turn in each round, medians (rounds: {repeat} after one to warm up); \
+                 all {threads} threads: likewise, but time on the clock"
             ),
             rays,
             all_identical: rows.iter().all(|r| r.identical),

@@ -2,10 +2,16 @@
 
 use super::report::{Report, Row};
 use crate::info::list;
-use comfy_table::{CellAlignment, Table, TableStyle, presets};
+use comfy_table::{CellAlignment, ContentLineStyle, LineStyle, Table, TableStyle, presets};
 use indicatif::HumanCount;
 use std::fmt::Write;
 use tracer::Error;
+
+/// Columns apart, a line below their names.
+const PLAIN: TableStyle = TableStyle::new()
+    .header_lines(ContentLineStyle::new(' ', ' ', ' '))
+    .header_separator(LineStyle::new('-', '-', '-', '-'))
+    .content_lines(ContentLineStyle::new(' ', ' ', ' '));
 
 /// For a terminal.
 pub fn table(report: &Report) -> String {
@@ -13,8 +19,7 @@ pub fn table(report: &Report) -> String {
     for (name, value) in facts(report) {
         let _ = writeln!(text, "{name:<12} {value}");
     }
-    let style = presets::ASCII_NO_BORDERS;
-    let _ = write!(text, "\n{}\n\n{}\n\n", rows(report, style), tests(report, style));
+    let _ = write!(text, "\n{}\n\n{}\n\n", rows(report, PLAIN), tests(report, PLAIN));
     for note in notes(report) {
         let _ = writeln!(text, "{note}");
     }
