@@ -216,9 +216,11 @@ fn awkward_meshes_are_exact() {
 /// The wall that a ray parallel to it lies in, an origin on a slab, a zero direction component: no NaN and no lost hit.
 #[test]
 fn flat_floor_is_hit_straight_and_slanted() {
-    let mut mesh = Mesh::default();
-    mesh.positions = vec![[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];
-    mesh.triangles = vec![[0, 1, 2], [0, 2, 3]];
+    let mesh = Mesh {
+        positions: vec![[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    };
     let bvh = Bvh::build(&mesh, &BuildConfig::default(), &Silent).expect("a valid mesh");
     let rays: RayBatch = [
         Ray::new([0.25, 1.0, -0.5], [0.0, -1.0, 0.0]),

@@ -152,11 +152,11 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn load_block(block: &Block<$Lane>, chunk: usize) -> Self {
-                Self::load(&block.0[4 * chunk..])
+                Self::load(&block.0.as_chunks::<4>().0[chunk])
             }
             #[inline(always)]
             fn store_block(self, block: &mut Block<$Lane>, chunk: usize) {
-                self.store(&mut block.0[4 * chunk..]);
+                self.store(&mut block.0.as_chunks_mut::<4>().0[chunk]);
             }
             #[inline(always)]
             fn gather_masked(src: &[$Lane], index: Uint4, mask: Bool4, or: Self) -> Self {
