@@ -30,8 +30,11 @@ fn split(file: &[u8]) -> (&str, &[u8]) {
     (std::str::from_utf8(&file[10..end]).expect("text"), &file[end..])
 }
 
+/// t, u, v, primitive.
+type Row = (f32, f32, f32, u32);
+
 /// t, u, v, primitive of each ray.
-fn hits(file: &[u8]) -> Vec<(f32, f32, f32, u32)> {
+fn hits(file: &[u8]) -> Vec<Row> {
     let (header, data) = split(file);
     let dtype = "[('t', '<f4'), ('u', '<f4'), ('v', '<f4'), ('primitive', '<u4')]";
     let start = format!("{{'descr': {dtype}, 'fortran_order': False, 'shape': ({},), }}", data.len() / 16);
@@ -48,10 +51,10 @@ fn bools(file: &[u8]) -> Vec<bool> {
     data.iter().map(|&b| [false, true][usize::from(b)]).collect()
 }
 
-const MISS: (f32, f32, f32, u32) = (INF, 0.0, 0.0, u32::MAX);
+const MISS: Row = (INF, 0.0, 0.0, u32::MAX);
 
 /// Rays on the two squares, and what they hit by hand.
-fn by_hand() -> (Vec<[f32; 8]>, Vec<(f32, f32, f32, u32)>) {
+fn by_hand() -> (Vec<[f32; 8]>, Vec<Row>) {
     let down = |x, y| [x, y, 2.0, 0.0, 0.0, 0.0, -1.0, INF];
     vec![
         (down(0.75, 0.25), (2.0, 0.5, 0.25, 0)),

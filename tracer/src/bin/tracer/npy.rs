@@ -121,23 +121,20 @@ const NO_NPY: &str = "this is no .npy file: write it with numpy.save(file, rays)
 
 /// The text of the header; none when this is no `.npy` file.
 fn read_header(file: &mut impl Read) -> io::Result<Option<String>> {
-    let mut buffer = vec![0; MAX_HEADER];
-    let &[.., major, _] = fill(file, &mut buffer[..8])? else { return Ok(None) };
-    let length_bytes = match major {
-        1 => 2,
-        2 | 3 => 4,
-        _ => 0,
-    };
-    if !buffer.starts_with(MAGIC) || length_bytes == 0 {
+    let mut start = [0; 8];
+    if fill(file, &mut start)?.len() < 8 || !start.starts_with(MAGIC) {
         return Ok(None);
     }
     let mut length = [0; 4];
-    file.read_exact(&mut length[..length_bytes])?;
+    let length_bytes = match start[MAGIC.len()] {
+        1 => 2,
+        2 | 3 => 4,
+        _ => return Ok(None),
+    };
+    fill(file, &mut length[..length_bytes])?;
     let length = u32::from_le_bytes(length) as usize;
-    if length > MAX_HEADER {
-        return Ok(None);
-    }
-    let text = fill(file, &mut buffer[..length])?;
+    let mut text = vec![0; length.min(MAX_HEADER)];
+    let text = fill(file, &mut text)?;
     Ok((text.len() == length).then(|| String::from_utf8_lossy(text).into_owned()))
 }
 
