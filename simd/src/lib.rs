@@ -40,7 +40,8 @@
 //! # Inlining
 //!
 //! Every generic function on the way from `kernel!` to the loop must be `#[inline(always)]`. What is not inlined is compiled
-//! without the level's instructions: still correct, but each operation becomes a call through memory.
+//! without the level's instructions: still correct, but each operation becomes a call through memory. Closures, `array::map` and
+//! deep chains of iterators are not reliably inlined either: prefer plain loops over chunks and blocks.
 //!
 //! # The types cannot be named
 //!

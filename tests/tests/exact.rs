@@ -7,7 +7,7 @@ use tracer::bvh::{BuildConfig, Bvh};
 use tracer::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
 use tracer::method::{BitVec, Context, Method, Packet, SharedOrigin, SlabForm, Width};
 use tracer::progress::Silent;
-use tracer::render::EyeRays;
+use tracer::render::{EyeRays, Frame, Settings, Surfaces};
 use tracer::scene::{Mesh, Scene, builtin};
 
 const WIDTHS: [Width; 4] = [Width::One, Width::Four, Width::Eight, Width::Sixteen];
@@ -241,6 +241,23 @@ fn flat_floor_is_hit_straight_and_slanted() {
             let miss = (f32::INFINITY, Hit::NO_PRIMITIVE);
             assert_eq!(found, [(1.0, 0), (0.5, 0), (1.0, 0), miss, (1.0, 0), miss], "{level}, width {width}");
         }
+    }
+}
+
+/// The same numbers on every processor: what a picture of a small scene hashes to, hits and colours.
+#[test]
+fn golden_picture_is_the_same_on_every_machine() {
+    let scene = builtin("balls:2").expect("a built-in scene").expect("a possible size");
+    let bvh = Bvh::build(&scene.mesh, &BuildConfig::default(), &Silent).expect("a valid mesh");
+    let surfaces = Surfaces::new(&scene);
+    for level in Level::available() {
+        let settings = Settings { width: 64, height: 48, level, lanes: Width::Auto, shadows: true };
+        let mut frame = Frame::new(&scene, &surfaces, scene.camera_or_default(), settings);
+        let mut cx = Context::default();
+        frame.eye_rays();
+        frame.cast(&Packet::new(&bvh, level, Width::Auto), &mut cx).expect("not cancelled");
+        let image = frame.shade(&cx).expect("not cancelled");
+        assert_eq!((frame.hits().hash(), image.hash()), (0xbd58_07c3_4762_c540, 0xf50d_1bbd_d452_2883), "{level}");
     }
 }
 
