@@ -60,8 +60,8 @@ struct Report {
     rays: usize,
     mrays_per_s: f64,
     hits: usize,
-    hits_hash: String,
-    image_hash: String,
+    hits_hash: Option<String>,
+    image_hash: Option<String>,
     output: PathBuf,
     output_bytes: usize,
 }
@@ -93,7 +93,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let method = args.trace.method(&work.bvh, level);
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
 
-    console.stage("render", 3);
+    console.stage("render", 4);
     let mut frame = Frame::new(scene, &work.surfaces, camera, settings);
     let ((), eye_ms) = timed(|| frame.eye_rays());
     console.advance(1);
@@ -104,7 +104,9 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let image = image?;
     console.advance(1);
     let hits = frame.hits().iter().filter(|h| !h.is_miss()).count();
-    let hits_hash = format!("{:016x}", frame.hits().hash());
+    // Only JSON shows the hashes.
+    let hits_hash = args.json.then(|| format!("{:016x}", frame.hits().hash()));
+    let image_hash = args.json.then(|| format!("{:016x}", image.hash()));
 
     let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
     console.check()?;
@@ -132,7 +134,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         mrays_per_s: mrays_per_s(rays, cast_ms),
         hits,
         hits_hash,
-        image_hash: format!("{:016x}", image.hash()),
+        image_hash,
         output,
         output_bytes,
     };

@@ -22,7 +22,7 @@ pub struct Config {
 
 impl Default for Config {
     fn default() -> Self {
-        Self { max_leaf: Node::MAX_LEAF, traversal_cost: 2.0, child_order: ChildOrder::LargerFirst }
+        Self { max_leaf: Node::MAX_LEAF, traversal_cost: 1.0, child_order: ChildOrder::LargerFirst }
     }
 }
 

@@ -9,9 +9,9 @@ use tracer::Error;
 
 /// Columns apart, a line below their names.
 const PLAIN: TableStyle = TableStyle::new()
-    .header_lines(ContentLineStyle::new(' ', ' ', ' '))
-    .header_separator(LineStyle::new('-', '-', '-', '-'))
-    .content_lines(ContentLineStyle::new(' ', ' ', ' '));
+    .header_lines(ContentLineStyle::none().junction(' '))
+    .header_separator(LineStyle::none().fill('-').junction('-'))
+    .content_lines(ContentLineStyle::none().junction(' '));
 
 /// For a terminal.
 pub fn table(report: &Report) -> String {
@@ -118,6 +118,11 @@ fn tests(report: &Report, style: TableStyle) -> String {
 
 /// Numbers to the right.
 fn aligned(mut table: Table) -> String {
+    if table.style() == PLAIN {
+        for column in table.column_iter_mut() {
+            column.set_padding((0, 1));
+        }
+    }
     table.column_iter_mut().skip(1).for_each(|c| c.set_cell_alignment(CellAlignment::Right));
     table.trim_fmt()
 }
