@@ -1,5 +1,26 @@
 //! Axis-aligned boxes.
 
+/// `f` of the components of both. (`array::from_fn` is not always inlined, and builders do this a lot.)
+#[inline(always)]
+pub(crate) fn zip<const N: usize>(mut a: [f32; N], b: &[f32; N], f: impl Fn(f32, f32) -> f32) -> [f32; N] {
+    for i in 0..N {
+        a[i] = f(a[i], b[i]);
+    }
+    a
+}
+
+/// The smaller and the larger. Not `f32::min`: that leaves the sign of a zero to the platform.
+#[inline(always)]
+pub(crate) fn min(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// See [`min`].
+#[inline(always)]
+pub(crate) fn max(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
 /// An axis-aligned box; empty when `min > max`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aabb {
@@ -24,13 +45,7 @@ impl Aabb {
     #[inline]
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
-        // Not `f32::min`: that leaves the sign of a zero to the platform.
-        let min = |a: f32, b: f32| if a < b { a } else { b };
-        let max = |a: f32, b: f32| if a > b { a } else { b };
-        Self {
-            min: std::array::from_fn(|i| min(self.min[i], other.min[i])),
-            max: std::array::from_fn(|i| max(self.max[i], other.max[i])),
-        }
+        Self { min: zip(self.min, &other.min, min), max: zip(self.max, &other.max, max) }
     }
 
     /// Half the surface area (the constant factor cancels in every cost); 0 for an empty box.
@@ -53,7 +68,7 @@ impl Aabb {
     #[inline]
     #[must_use]
     pub fn extent(&self) -> [f32; 3] {
-        std::array::from_fn(|i| self.max[i] - self.min[i])
+        zip(self.max, &self.min, |a, b| a - b)
     }
 
     /// The middle.

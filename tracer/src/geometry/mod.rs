@@ -1,6 +1,6 @@
 //! Boxes, triangles and rays, and how they meet.
 
-mod aabb;
+pub(crate) mod aabb;
 mod hit;
 pub(crate) mod moller_trumbore;
 mod ray;

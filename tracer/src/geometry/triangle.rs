@@ -1,6 +1,7 @@
 //! The 48-byte triangle of Geimer & Müller 2003, section 3.2.
 
 use super::Aabb;
+use super::aabb::zip;
 
 /// One vertex and two edges in 16-byte blocks, the fourth word of each used.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,9 +23,10 @@ pub struct Triangle {
 
 impl Triangle {
     /// From three vertices.
+    #[inline]
     #[must_use]
     pub fn new([v0, v1, v2]: [[f32; 3]; 3], id: u32, material: u32) -> Self {
-        let edge = |v: [f32; 3]| std::array::from_fn(|i| v[i] - v0[i]);
+        let edge = |v| zip(v, &v0, |a, b| a - b);
         Self { v0, id, e1: edge(v1), material, e2: edge(v2), geometry: 0 }
     }
 
@@ -33,8 +35,8 @@ impl Triangle {
     #[inline]
     #[must_use]
     pub fn bounds(&self) -> Aabb {
-        let at = |e: [f32; 3]| std::array::from_fn(|i| self.v0[i] + e[i]);
-        Aabb::of_points([self.v0, at(self.e1), at(self.e2)])
+        let at = |e| zip(self.v0, e, |a, b| a + b);
+        Aabb::of_points([self.v0, at(&self.e1), at(&self.e2)])
     }
 
     /// True when no ray can meaningfully hit it: its sides are parallel to within the precision of `f32`

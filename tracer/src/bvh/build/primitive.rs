@@ -2,6 +2,7 @@
 
 use super::triangle;
 use crate::geometry::Aabb;
+use crate::geometry::aabb::{max, min, zip};
 use crate::scene::Mesh;
 use rayon::prelude::*;
 
@@ -18,18 +19,13 @@ impl Box4 {
 
     #[inline(always)]
     pub(super) fn union(&self, b: &Self) -> Self {
-        let min = |a: f32, b: f32| if a < b { a } else { b };
-        let max = |a: f32, b: f32| if a > b { a } else { b };
-        Self {
-            min: std::array::from_fn(|i| min(self.min[i], b.min[i])),
-            max: std::array::from_fn(|i| max(self.max[i], b.max[i])),
-        }
+        Self { min: zip(self.min, &b.min, min), max: zip(self.max, &b.max, max) }
     }
 
     /// As [`Aabb::half_area`], but infinite for an empty box.
     #[inline(always)]
     pub(super) fn half_area(&self) -> f32 {
-        let e: [f32; 4] = std::array::from_fn(|i| self.max[i] - self.min[i]);
+        let e = zip(self.max, &self.min, |a, b| a - b);
         e[0] * e[1] + e[1] * e[2] + e[2] * e[0]
     }
 
@@ -72,7 +68,7 @@ pub(super) fn union(primitives: &[Primitive]) -> Box4 {
 /// The box of the centers.
 pub(super) fn centers(primitives: &[Primitive]) -> Box4 {
     primitives.iter().fold(Box4::EMPTY, |b, p| {
-        let center = std::array::from_fn(|i| p.0.min[i] + p.0.max[i]);
+        let center = zip(p.0.min, &p.0.max, |a, b| a + b);
         b.union(&Box4 { min: center, max: center })
     })
 }
