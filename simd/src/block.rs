@@ -17,3 +17,13 @@ impl<T: Copy + Default> Default for Block<T> {
         Self([T::default(); 16])
     }
 }
+
+/// The lanes of blocks, one after the other.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[inline(always)]
+pub(crate) fn lanes_mut<T>(blocks: &mut [Block<T>]) -> &mut [T] {
+    let (lanes, n) = (blocks.as_mut_ptr().cast(), 16 * blocks.len());
+    // SAFETY: a block is sixteen lanes and, if those have 4 bytes, nothing else.
+    const { assert!(size_of::<T>() == 4) }
+    unsafe { std::slice::from_raw_parts_mut(lanes, n) }
+}

@@ -63,9 +63,10 @@ mod level;
 pub mod math;
 mod pair;
 mod prefetch;
+mod soft;
 mod vector;
 
 pub use block::Block;
 pub use level::{Isa, Kernel, Level, LevelError};
 pub use prefetch::prefetch;
-pub use vector::{Float, Int, Integer, Lane, Mask, Simd, Uint, Vector};
+pub use vector::{Float, Halves, Int, Integer, Lane, Mask, SetLanes, Simd, Uint, Vector};

@@ -1,21 +1,25 @@
 //! Twice the lanes from two vectors: every width that a backend does not have natively.
 
-use crate::vector::sealed::Sealed;
-use crate::{Block, Float, Int, Integer, Mask, Uint, Vector};
+use crate::backend::{check_bounds, list_lanes};
+use crate::vector::check_masked;
+use crate::vector::sealed::{List, Sealed};
+use crate::{Block, Float, Halves, Int, Integer, Mask, Uint, Vector};
 use std::fmt;
 use std::ops::*;
 
 /// The lower and the upper half of a vector of twice the lanes.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default, PartialEq)]
 pub struct Pair<V>(pub(crate) V, pub(crate) V);
 
 impl<V> Sealed for Pair<V> {}
 
-impl<V: fmt::Debug> fmt::Debug for Pair<V> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?}{:?}", self.0, self.1)
+impl<V: List> List for Pair<V> {
+    fn list(&self, list: &mut fmt::DebugList<'_, '_>) {
+        self.0.list(list);
+        self.1.list(list);
     }
 }
+list_lanes!([V: List] Pair<V>);
 
 macro_rules! operators {
     ($($Op:ident $op:ident $OpAssign:ident $op_assign:ident),*) => {$(
@@ -119,6 +123,26 @@ impl<V: Vector> Vector for Pair<V> {
         self.1.store(&mut dst[V::LANES..]);
     }
     #[inline(always)]
+    fn load_partial(src: &[V::Lane]) -> Self {
+        Self(V::load_partial(src), V::load_partial(src.get(V::LANES..).unwrap_or_default()))
+    }
+    #[inline(always)]
+    fn store_partial(self, dst: &mut [V::Lane]) {
+        self.0.store_partial(dst);
+        self.1.store_partial(dst.get_mut(V::LANES..).unwrap_or_default());
+    }
+    #[inline(always)]
+    fn load_masked(src: &[V::Lane], mask: Self::Mask, or: Self) -> Self {
+        let upper = src.get(V::LANES..).unwrap_or_default();
+        Self(V::load_masked(src, mask.0, or.0), V::load_masked(upper, mask.1, or.1))
+    }
+    #[inline(always)]
+    fn store_masked(self, dst: &mut [V::Lane], mask: Self::Mask) {
+        check_masked(dst.len(), mask);
+        self.0.store_masked(dst, mask.0);
+        self.1.store_masked(dst.get_mut(V::LANES..).unwrap_or_default(), mask.1);
+    }
+    #[inline(always)]
     fn load_block(block: &Block<V::Lane>, chunk: usize) -> Self {
         assert!(chunk < 16 / Self::LANES, "chunk {chunk} of a block");
         Self(V::load_block(block, 2 * chunk), V::load_block(block, 2 * chunk + 1))
@@ -136,6 +160,37 @@ impl<V: Vector> Vector for Pair<V> {
     #[inline(always)]
     fn gather_masked(src: &[V::Lane], index: Self::Index, mask: Self::Mask, or: Self) -> Self {
         Self(V::gather_masked(src, index.0, mask.0, or.0), V::gather_masked(src, index.1, mask.1, or.1))
+    }
+    #[inline(always)]
+    fn scatter_masked(self, dst: &mut [V::Lane], index: Self::Index, mask: Self::Mask) {
+        check_bounds::<Self>(dst.len(), index, mask);
+        self.0.scatter_masked(dst, index.0, mask.0);
+        self.1.scatter_masked(dst, index.1, mask.1);
+    }
+    #[inline(always)]
+    fn stream(dst: &mut [Block<V::Lane>], mut f: impl FnMut(usize) -> Self) {
+        let mut upper = V::default();
+        V::stream(dst, |i| {
+            if i % 2 == 0 {
+                let both = f(i / 2);
+                upper = both.1;
+                both.0
+            } else {
+                upper
+            }
+        });
+    }
+    #[inline(always)]
+    fn load_rows3(rows: &[[V::Lane; 3]]) -> [Self; 3] {
+        let rows = &rows[..Self::LANES];
+        let (lo, hi) = (V::load_rows3(rows), V::load_rows3(&rows[V::LANES..]));
+        [Self(lo[0], hi[0]), Self(lo[1], hi[1]), Self(lo[2], hi[2])]
+    }
+    #[inline(always)]
+    fn store_rows3([a, b, c]: [Self; 3], rows: &mut [[V::Lane; 3]]) {
+        let rows = &mut rows[..Self::LANES];
+        V::store_rows3([a.0, b.0, c.0], rows);
+        V::store_rows3([a.1, b.1, c.1], &mut rows[V::LANES..]);
     }
     #[inline(always)]
     fn load_rows4(rows: &[[V::Lane; 4]]) -> [Self; 4] {
@@ -175,12 +230,56 @@ impl<V: Vector> Vector for Pair<V> {
         Self(self.0.max(other.0), self.1.max(other.1))
     }
     #[inline(always)]
+    fn lookup(self, index: Self::Index) -> Self {
+        let upper = V::Index::splat(V::LANES as u32);
+        let half = |index: V::Index| {
+            let in_lower = (index & upper).eq(V::Index::default());
+            V::select(in_lower, self.0.lookup(index), self.1.lookup(index))
+        };
+        Self(half(index.0), half(index.1))
+    }
+    #[inline(always)]
+    fn interleave(self, other: Self) -> (Self, Self) {
+        let (a, b) = (self.0.interleave(other.0), self.1.interleave(other.1));
+        (Self(a.0, a.1), Self(b.0, b.1))
+    }
+    #[inline(always)]
+    fn deinterleave(self, other: Self) -> (Self, Self) {
+        let (a, b) = (self.0.deinterleave(self.1), other.0.deinterleave(other.1));
+        (Self(a.0, b.0), Self(a.1, b.1))
+    }
+    #[inline(always)]
+    fn compress(self, mask: Self::Mask) -> Self {
+        let mut block = Block::default();
+        self.0.compress(mask.0).store(&mut block.0);
+        let n = mask.0.count() % 16;
+        self.1.compress(mask.1).store(&mut block.0[n..]);
+        Self::load_block(&block, 0)
+    }
+    #[inline(always)]
     fn reduce_min(self) -> V::Lane {
         self.0.min(self.1).reduce_min()
     }
     #[inline(always)]
     fn reduce_max(self) -> V::Lane {
         self.0.max(self.1).reduce_max()
+    }
+}
+
+impl<V: Vector> Halves for Pair<V> {
+    type Half = V;
+
+    #[inline(always)]
+    fn from_halves(low: V, high: V) -> Self {
+        Self(low, high)
+    }
+    #[inline(always)]
+    fn low(self) -> V {
+        self.0
+    }
+    #[inline(always)]
+    fn high(self) -> V {
+        self.1
     }
 }
 
@@ -198,7 +297,23 @@ impl<V: Float> Float for Pair<V> {
 
     lanewise! {
         abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round();
-        mul_add(b, c); mul_sub(b, c); neg_mul_add(b, c);
+        mul_add(b, c); mul_sub(b, c); neg_mul_add(b, c); neg_mul_sub(b, c); mul_add_exact(b, c);
+        rcp_approx(); rsqrt_approx();
+    }
+    #[inline(always)]
+    fn load_f16(src: &[u16]) -> Self {
+        let src = &src[..Self::LANES];
+        Self(V::load_f16(src), V::load_f16(&src[V::LANES..]))
+    }
+    #[inline(always)]
+    fn store_f16(self, dst: &mut [u16]) {
+        let dst = &mut dst[..Self::LANES];
+        self.0.store_f16(dst);
+        self.1.store_f16(&mut dst[V::LANES..]);
+    }
+    #[inline(always)]
+    fn reduce_mul(self) -> f32 {
+        (self.0 * self.1).reduce_mul()
     }
     #[inline(always)]
     fn to_int(self) -> Self::Int {
@@ -230,10 +345,30 @@ impl<V: Float> Float for Pair<V> {
     }
 }
 
-impl<V: Integer> Integer for Pair<V> where Pair<V::Index>: Uint<Mask = Pair<V::Mask>> {}
+impl<V: Integer> Integer for Pair<V>
+where
+    Pair<V::Index>: Uint<Mask = Pair<V::Mask>>,
+{
+    #[inline(always)]
+    fn shl_lanes(self, n: Self::Index) -> Self {
+        Self(self.0.shl_lanes(n.0), self.1.shl_lanes(n.1))
+    }
+    #[inline(always)]
+    fn shr_lanes(self, n: Self::Index) -> Self {
+        Self(self.0.shr_lanes(n.0), self.1.shr_lanes(n.1))
+    }
+    #[inline(always)]
+    fn reduce_add(self) -> V::Lane {
+        (self.0 + self.1).reduce_add()
+    }
+    #[inline(always)]
+    fn reduce_mul(self) -> V::Lane {
+        (self.0 * self.1).reduce_mul()
+    }
+}
 
 impl<V: Int> Int for Pair<V> {
-    lanewise! { abs(); }
+    lanewise! { abs(); mul_high(other); }
     #[inline(always)]
     fn to_uint(self) -> Self::Index {
         Pair(self.0.to_uint(), self.1.to_uint())
@@ -244,4 +379,6 @@ impl<V: Int> Int for Pair<V> {
     }
 }
 
-impl<V: Uint> Uint for Pair<V> {}
+impl<V: Uint> Uint for Pair<V> {
+    lanewise! { mul_high(other); count_ones(); leading_zeros(); trailing_zeros(); }
+}

@@ -1,10 +1,12 @@
 //! AVX2 and FMA, eight lanes. Four lanes are [`sse`](super::sse)'s.
 
-use super::sse::{self, Sse};
-use super::{check_bounds, debug_lanes, intrinsics, operators};
+use super::sse::{self, Sse, StreamFence};
+use super::tables::COMPRESS8;
+use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
 use crate::pair::Pair;
-use crate::vector::sealed::Sealed;
-use crate::{Block, Float, Int, Integer, Isa, Level, Mask, Simd, Uint, Vector};
+use crate::vector::check_masked;
+use crate::vector::sealed::{List, Sealed};
+use crate::{Block, Float, Halves, Int, Integer, Isa, Level, Mask, Simd, Uint, Vector};
 #[cfg(target_arch = "x86")]
 use std::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
@@ -19,7 +21,7 @@ use std::ops::*;
 pub struct Avx2;
 impl Sse for Avx2 {
     const SSE41: bool = true;
-    const FMA: bool = true;
+    const AVX2: bool = true;
 }
 
 impl Sealed for Avx2 {}
@@ -73,7 +75,7 @@ register! {
     /// Eight `u32`.
     Uint8(__m256i), x: from_ps intrinsics!(_mm256_castps_si256(x)), to_ps intrinsics!(_mm256_castsi256_ps(x));
 }
-debug_lanes!([] Float8, [] Int8, [] Uint8);
+vector_basics!([] Float8, [] Int8, [] Uint8);
 
 // ---- Masks ----
 
@@ -82,12 +84,7 @@ debug_lanes!([] Float8, [] Int8, [] Uint8);
 #[repr(transparent)]
 pub struct Bool8(__m256);
 
-impl Sealed for Bool8 {}
-impl fmt::Debug for Bool8 {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:08b}", self.bitmask())
-    }
-}
+mask_basics!([] Bool8);
 
 operators!([] Bool8:
     BitAnd bitand BitAndAssign bitand_assign = _mm256_and_ps;
@@ -111,6 +108,10 @@ impl Bool8 {
     #[inline(always)]
     fn of_si(x: __m256i) -> Self {
         Self::new(intrinsics!(_mm256_castsi256_ps(x)))
+    }
+    #[inline(always)]
+    fn si(self) -> __m256i {
+        intrinsics!(_mm256_castps_si256(self.0))
     }
 }
 
@@ -177,6 +178,23 @@ macro_rules! vector {
             }
         }
 
+        impl Halves for $V {
+            type Half = $Half;
+
+            #[inline(always)]
+            fn from_halves(low: $Half, high: $Half) -> Self {
+                Self::of_ps(join(low.ps(), high.ps()))
+            }
+            #[inline(always)]
+            fn low(self) -> $Half {
+                self.halves().0
+            }
+            #[inline(always)]
+            fn high(self) -> $Half {
+                self.halves().1
+            }
+        }
+
         impl Vector for $V {
             type Lane = $Lane;
             type Mask = Bool8;
@@ -210,6 +228,39 @@ macro_rules! vector {
                 let dst: *mut $Lane = block.0.as_chunks_mut::<8>().0[chunk].as_mut_ptr();
                 // SAFETY: eight elements are there to write, 32 * chunk bytes into a block aligned to 64.
                 unsafe { _mm256_store_ps(dst.cast(), self.ps()) }
+            }
+            #[inline(always)]
+            fn load_masked(src: &[$Lane], mask: Bool8, or: Self) -> Self {
+                check_masked(src.len(), mask);
+                // SAFETY: only lanes that are on are read, and the slice has those.
+                let x = Self::of_ps(unsafe { _mm256_maskload_ps(src.as_ptr().cast(), mask.si()) });
+                Self::select(mask, x, or)
+            }
+            #[inline(always)]
+            fn store_masked(self, dst: &mut [$Lane], mask: Bool8) {
+                check_masked(dst.len(), mask);
+                // SAFETY: only lanes that are on are written, and the slice has those.
+                unsafe { _mm256_maskstore_ps(dst.as_mut_ptr().cast(), mask.si(), self.ps()) }
+            }
+            #[inline(always)]
+            fn load_partial(src: &[$Lane]) -> Self {
+                let n = src.len().min(8);
+                Self::load_masked(&src[..n], Bool8::first_n(n), Self::default())
+            }
+            #[inline(always)]
+            fn store_partial(self, dst: &mut [$Lane]) {
+                let n = dst.len().min(8);
+                self.store_masked(&mut dst[..n], Bool8::first_n(n));
+            }
+            #[inline(always)]
+            fn stream(dst: &mut [Block<$Lane>], mut f: impl FnMut(usize) -> Self) {
+                let _fence = StreamFence;
+                for (i, chunk) in crate::block::lanes_mut(dst).as_chunks_mut::<8>().0.iter_mut().enumerate() {
+                    let x = f(i).ps();
+                    // SAFETY: eight elements are there to write, at a multiple of 32 bytes into blocks aligned to 64; the fence
+                    // comes before anybody else can look.
+                    unsafe { _mm256_stream_ps(chunk.as_mut_ptr().cast(), x) }
+                }
             }
             #[inline(always)]
             fn gather_masked(src: &[$Lane], index: Uint8, mask: Bool8, or: Self) -> Self {
@@ -247,6 +298,37 @@ macro_rules! vector {
             fn select(mask: Bool8, on_true: Self, on_false: Self) -> Self {
                 let (t, f, m) = (on_true.ps(), on_false.ps(), mask.0);
                 Self::of_ps(intrinsics!(_mm256_blendv_ps(f, t, m)))
+            }
+            #[inline(always)]
+            fn lookup(self, index: Uint8) -> Self {
+                let x = self.ps();
+                Self::of_ps(intrinsics!(_mm256_permutevar8x32_ps(x, index.0)))
+            }
+            #[inline(always)]
+            fn interleave(self, other: Self) -> (Self, Self) {
+                let (a, b) = (self.ps(), other.ps());
+                let (low, high) = intrinsics! {
+                    let (even, odd) = (_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
+                    (_mm256_permute2f128_ps::<0x20>(even, odd), _mm256_permute2f128_ps::<0x31>(even, odd))
+                };
+                (Self::of_ps(low), Self::of_ps(high))
+            }
+            #[inline(always)]
+            fn deinterleave(self, other: Self) -> (Self, Self) {
+                let (a, b) = (self.ps(), other.ps());
+                let (even, odd) = intrinsics! {
+                    let (low, high) = (_mm256_permute2f128_ps::<0x20>(a, b), _mm256_permute2f128_ps::<0x31>(a, b));
+                    (_mm256_shuffle_ps::<0b10_00_10_00>(low, high), _mm256_shuffle_ps::<0b11_01_11_01>(low, high))
+                };
+                (Self::of_ps(even), Self::of_ps(odd))
+            }
+            #[inline(always)]
+            fn compress(self, mask: Bool8) -> Self {
+                let lanes: *const [i8; 8] = &COMPRESS8[mask.bitmask() as usize % 256];
+                // SAFETY: eight bytes are there to read.
+                let lanes = Uint8(unsafe { _mm256_cvtepi8_epi32(_mm_loadl_epi64(lanes.cast())) });
+                let packed = self.lookup(lanes).ps();
+                Self::of_ps(intrinsics!(_mm256_blendv_ps(packed, _mm256_setzero_ps(), lanes.ps())))
             }
             #[inline(always)]
             fn reduce_min(self) -> $Lane {
@@ -356,6 +438,35 @@ impl Float for Float8 {
     }
 
     #[inline(always)]
+    fn mul_add_exact(self, b: Self, c: Self) -> Self {
+        self.mul_add(b, c)
+    }
+    #[inline(always)]
+    fn neg_mul_sub(self, b: Self, c: Self) -> Self {
+        Self::new(intrinsics!(_mm256_fnmsub_ps(self.0, b.0, c.0)))
+    }
+    #[inline(always)]
+    fn rcp_approx(self) -> Self {
+        Self::new(intrinsics!(_mm256_rcp_ps(self.0)))
+    }
+    #[inline(always)]
+    fn rsqrt_approx(self) -> Self {
+        Self::new(intrinsics!(_mm256_rsqrt_ps(self.0)))
+    }
+    #[inline(always)]
+    fn load_f16(src: &[u16]) -> Self {
+        let src: *const u16 = src[..8].as_ptr();
+        // SAFETY: eight elements are there to read.
+        Self::new(unsafe { _mm256_cvtph_ps(_mm_loadu_si128(src.cast())) })
+    }
+    #[inline(always)]
+    fn store_f16(self, dst: &mut [u16]) {
+        let dst: *mut u16 = dst[..8].as_mut_ptr();
+        // SAFETY: eight elements are there to write.
+        unsafe { _mm_storeu_si128(dst.cast(), _mm256_cvtps_ph::<_MM_FROUND_TO_NEAREST_INT>(self.0)) }
+    }
+
+    #[inline(always)]
     fn to_int(self) -> Int8 {
         // Out of range gives i32::MIN: all bits flipped that is i32::MAX. NaN is cleared.
         Int8::new(intrinsics! {
@@ -409,7 +520,7 @@ impl Float for Float8 {
 
 /// Operators that `i32` and `u32` share, the shift to the right given.
 macro_rules! integer {
-    ($V:ident, $Lane:ty, $shift_right:ident) => {
+    ($V:ident, $Lane:ty, $shift_right:ident, $shift_lanes_right:ident) => {
         operators!([] $V:
             Add add AddAssign add_assign = _mm256_add_epi32;
             Sub sub SubAssign sub_assign = _mm256_sub_epi32;
@@ -451,11 +562,20 @@ macro_rules! integer {
                 Self::new(intrinsics!($shift_right(self.0, sse::shift_count(n))))
             }
         }
-        impl Integer for $V {}
+        impl Integer for $V {
+            #[inline(always)]
+            fn shl_lanes(self, n: Uint8) -> Self {
+                Self::new(intrinsics!(_mm256_sllv_epi32(self.0, _mm256_and_si256(n.0, _mm256_set1_epi32(31)))))
+            }
+            #[inline(always)]
+            fn shr_lanes(self, n: Uint8) -> Self {
+                Self::new(intrinsics!($shift_lanes_right(self.0, _mm256_and_si256(n.0, _mm256_set1_epi32(31)))))
+            }
+        }
     };
 }
-integer!(Int8, i32, _mm256_sra_epi32);
-integer!(Uint8, u32, _mm256_srl_epi32);
+integer!(Int8, i32, _mm256_sra_epi32, _mm256_srav_epi32);
+integer!(Uint8, u32, _mm256_srl_epi32, _mm256_srlv_epi32);
 
 vector! { Int8, sse::Int4<Avx2>, i32, x: splat _mm256_set1_epi32(x), {
     #[inline(always)]
@@ -529,4 +649,13 @@ vector! { Uint8, sse::Uint4<Avx2>, u32, x: splat _mm256_set1_epi32(x as i32), {
     }
 } }
 
-impl Uint for Uint8 {}
+impl Uint for Uint8 {
+    #[inline(always)]
+    fn mul_high(self, other: Self) -> Self {
+        Self::new(intrinsics! {
+            let even = _mm256_mul_epu32(self.0, other.0);
+            let odd = _mm256_mul_epu32(_mm256_srli_epi64::<32>(self.0), _mm256_srli_epi64::<32>(other.0));
+            _mm256_blend_epi32::<0b1010_1010>(_mm256_srli_epi64::<32>(even), odd)
+        })
+    }
+}

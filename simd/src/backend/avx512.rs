@@ -1,10 +1,11 @@
 //! AVX-512, sixteen lanes and mask registers. Four and eight lanes are [`sse`](super::sse)'s and [`avx2`](super::avx2)'s.
 
 use super::avx2::{self, Avx2};
-use super::sse;
-use super::{check_bounds, debug_lanes, intrinsics, operators};
-use crate::vector::sealed::Sealed;
-use crate::{Block, Float, Int, Integer, Isa, Level, Mask, Simd, Uint, Vector};
+use super::sse::{self, StreamFence};
+use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
+use crate::vector::check_masked;
+use crate::vector::sealed::{List, Sealed};
+use crate::{Block, Float, Halves, Int, Integer, Isa, Level, Mask, Simd, Uint, Vector};
 #[cfg(target_arch = "x86")]
 use std::arch::x86::*;
 #[cfg(target_arch = "x86_64")]
@@ -69,7 +70,7 @@ register! {
     /// Sixteen `u32`.
     Uint16(__m512i), x: from_ps intrinsics!(_mm512_castps_si512(x)), to_ps intrinsics!(_mm512_castsi512_ps(x));
 }
-debug_lanes!([] Float16, [] Int16, [] Uint16);
+vector_basics!([] Float16, [] Int16, [] Uint16);
 
 // ---- Masks ----
 
@@ -78,12 +79,7 @@ debug_lanes!([] Float16, [] Int16, [] Uint16);
 #[repr(transparent)]
 pub struct Bool16(__mmask16);
 
-impl Sealed for Bool16 {}
-impl fmt::Debug for Bool16 {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:016b}", self.0)
-    }
-}
+mask_basics!([] Bool16);
 
 /// Operators of masks: those of their bits.
 macro_rules! mask_operators {
@@ -180,6 +176,24 @@ macro_rules! vector {
             }
         }
 
+        impl Halves for $V {
+            type Half = $Half;
+
+            #[inline(always)]
+            fn from_halves(low: $Half, high: $Half) -> Self {
+                let (low, high) = (low.ps(), high.ps());
+                Self::of_ps(intrinsics!(_mm512_insertf32x8::<1>(_mm512_castps256_ps512(low), high)))
+            }
+            #[inline(always)]
+            fn low(self) -> $Half {
+                self.halves().0
+            }
+            #[inline(always)]
+            fn high(self) -> $Half {
+                self.halves().1
+            }
+        }
+
         impl Vector for $V {
             type Lane = $Lane;
             type Mask = Bool16;
@@ -213,6 +227,48 @@ macro_rules! vector {
                 let dst: *mut $Lane = block.0.as_chunks_mut::<16>().0[chunk].as_mut_ptr();
                 // SAFETY: sixteen elements are there to write, 64 * chunk bytes into a block aligned to 64.
                 unsafe { _mm512_store_ps(dst.cast(), self.ps()) }
+            }
+            #[inline(always)]
+            fn load_masked(src: &[$Lane], mask: Bool16, or: Self) -> Self {
+                check_masked(src.len(), mask);
+                // SAFETY: only lanes that are on are read, and the slice has those.
+                Self::of_ps(unsafe { _mm512_mask_loadu_ps(or.ps(), mask.0, src.as_ptr().cast()) })
+            }
+            #[inline(always)]
+            fn store_masked(self, dst: &mut [$Lane], mask: Bool16) {
+                check_masked(dst.len(), mask);
+                // SAFETY: only lanes that are on are written, and the slice has those.
+                unsafe { _mm512_mask_storeu_ps(dst.as_mut_ptr().cast(), mask.0, self.ps()) }
+            }
+            #[inline(always)]
+            fn load_partial(src: &[$Lane]) -> Self {
+                let n = src.len().min(16);
+                Self::load_masked(&src[..n], Bool16::first_n(n), Self::default())
+            }
+            #[inline(always)]
+            fn store_partial(self, dst: &mut [$Lane]) {
+                let n = dst.len().min(16);
+                self.store_masked(&mut dst[..n], Bool16::first_n(n));
+            }
+            #[inline(always)]
+            fn stream(dst: &mut [Block<$Lane>], mut f: impl FnMut(usize) -> Self) {
+                let _fence = StreamFence;
+                for (i, block) in dst.iter_mut().enumerate() {
+                    let x = f(i).ps();
+                    // SAFETY: sixteen elements are there to write, aligned to 64 bytes; the fence comes before anybody else can look.
+                    unsafe { _mm512_stream_ps(block.0.as_mut_ptr().cast(), x) }
+                }
+            }
+            #[inline(always)]
+            fn scatter_masked(self, dst: &mut [$Lane], index: Uint16, mask: Bool16) {
+                check_bounds::<Self>(dst.len(), index, mask);
+                if dst.len() > i32::MAX as usize {
+                    // The instruction takes indices as signed.
+                    return mask.set_lanes().for_each(|i| dst[index.lane(i) as usize] = self.lane(i));
+                }
+                let base: *mut f32 = dst.as_mut_ptr().cast();
+                // SAFETY: the lanes that are on have indices below `dst.len()`; the others are not written.
+                unsafe { _mm512_mask_i32scatter_ps::<4>(base.cast(), mask.0, index.0, self.ps()) }
             }
             #[inline(always)]
             fn gather_masked(src: &[$Lane], index: Uint16, mask: Bool16, or: Self) -> Self {
@@ -252,6 +308,36 @@ macro_rules! vector {
             #[inline(always)]
             fn select(mask: Bool16, on_true: Self, on_false: Self) -> Self {
                 Self::of_ps(intrinsics!(_mm512_mask_blend_ps(mask.0, on_false.ps(), on_true.ps())))
+            }
+            #[inline(always)]
+            fn lookup(self, index: Uint16) -> Self {
+                let x = self.ps();
+                Self::of_ps(intrinsics!(_mm512_permutexvar_ps(index.0, x)))
+            }
+            #[inline(always)]
+            fn interleave(self, other: Self) -> (Self, Self) {
+                let (a, b) = (self.ps(), other.ps());
+                let lane = |at: usize| Uint16::from_fn(|i| (at + i / 2 + 16 * (i % 2)) as u32).0;
+                let (low, high) = (lane(0), lane(8));
+                let (low, high) = intrinsics!((_mm512_permutex2var_ps(a, low, b), _mm512_permutex2var_ps(a, high, b)));
+                (Self::of_ps(low), Self::of_ps(high))
+            }
+            #[inline(always)]
+            fn deinterleave(self, other: Self) -> (Self, Self) {
+                let (a, b) = (self.ps(), other.ps());
+                let (even, odd) = (Uint16::from_fn(|i| 2 * i as u32).0, Uint16::from_fn(|i| 2 * i as u32 + 1).0);
+                let (even, odd) = intrinsics!((_mm512_permutex2var_ps(a, even, b), _mm512_permutex2var_ps(a, odd, b)));
+                (Self::of_ps(even), Self::of_ps(odd))
+            }
+            #[inline(always)]
+            fn compress(self, mask: Bool16) -> Self {
+                let x = self.ps();
+                Self::of_ps(intrinsics!(_mm512_maskz_compress_ps(mask.0, x)))
+            }
+            #[inline(always)]
+            fn expand(self, mask: Bool16) -> Self {
+                let x = self.ps();
+                Self::of_ps(intrinsics!(_mm512_maskz_expand_ps(mask.0, x)))
             }
             #[inline(always)]
             fn reduce_min(self) -> $Lane {
@@ -361,6 +447,35 @@ impl Float for Float16 {
     }
 
     #[inline(always)]
+    fn mul_add_exact(self, b: Self, c: Self) -> Self {
+        self.mul_add(b, c)
+    }
+    #[inline(always)]
+    fn neg_mul_sub(self, b: Self, c: Self) -> Self {
+        Self::new(intrinsics!(_mm512_fnmsub_ps(self.0, b.0, c.0)))
+    }
+    #[inline(always)]
+    fn rcp_approx(self) -> Self {
+        Self::new(intrinsics!(_mm512_rcp14_ps(self.0)))
+    }
+    #[inline(always)]
+    fn rsqrt_approx(self) -> Self {
+        Self::new(intrinsics!(_mm512_rsqrt14_ps(self.0)))
+    }
+    #[inline(always)]
+    fn load_f16(src: &[u16]) -> Self {
+        let src: *const u16 = src[..16].as_ptr();
+        // SAFETY: sixteen elements are there to read.
+        Self::new(unsafe { _mm512_cvtph_ps(_mm256_loadu_si256(src.cast())) })
+    }
+    #[inline(always)]
+    fn store_f16(self, dst: &mut [u16]) {
+        let dst: *mut u16 = dst[..16].as_mut_ptr();
+        // SAFETY: sixteen elements are there to write.
+        unsafe { _mm256_storeu_si256(dst.cast(), _mm512_cvtps_ph::<_MM_FROUND_TO_NEAREST_INT>(self.0)) }
+    }
+
+    #[inline(always)]
     fn to_int(self) -> Int16 {
         // Out of range gives i32::MIN, also above: there it is replaced. NaN is zeroed by its mask.
         Int16::new(intrinsics! {
@@ -401,7 +516,7 @@ impl Float for Float16 {
 
 /// Operators that `i32` and `u32` share, the shift to the right given.
 macro_rules! integer {
-    ($V:ident, $Lane:ty, $shift_right:ident) => {
+    ($V:ident, $Lane:ty, $shift_right:ident, $shift_lanes_right:ident) => {
         operators!([] $V:
             Add add AddAssign add_assign = _mm512_add_epi32;
             Sub sub SubAssign sub_assign = _mm512_sub_epi32;
@@ -443,11 +558,20 @@ macro_rules! integer {
                 Self::new(intrinsics!($shift_right(self.0, sse::shift_count(n))))
             }
         }
-        impl Integer for $V {}
+        impl Integer for $V {
+            #[inline(always)]
+            fn shl_lanes(self, n: Uint16) -> Self {
+                Self::new(intrinsics!(_mm512_sllv_epi32(self.0, _mm512_and_si512(n.0, _mm512_set1_epi32(31)))))
+            }
+            #[inline(always)]
+            fn shr_lanes(self, n: Uint16) -> Self {
+                Self::new(intrinsics!($shift_lanes_right(self.0, _mm512_and_si512(n.0, _mm512_set1_epi32(31)))))
+            }
+        }
     };
 }
-integer!(Int16, i32, _mm512_sra_epi32);
-integer!(Uint16, u32, _mm512_srl_epi32);
+integer!(Int16, i32, _mm512_sra_epi32, _mm512_srav_epi32);
+integer!(Uint16, u32, _mm512_srl_epi32, _mm512_srlv_epi32);
 
 vector! { Int16, avx2::Int8, sse::Int4<Avx2>, i32, x: splat _mm512_set1_epi32(x), {
     #[inline(always)]
@@ -519,4 +643,17 @@ vector! { Uint16, avx2::Uint8, sse::Uint4<Avx2>, u32, x: splat _mm512_set1_epi32
     }
 } }
 
-impl Uint for Uint16 {}
+impl Uint for Uint16 {
+    #[inline(always)]
+    fn mul_high(self, other: Self) -> Self {
+        Self::new(intrinsics! {
+            let even = _mm512_mul_epu32(self.0, other.0);
+            let odd = _mm512_mul_epu32(_mm512_srli_epi64::<32>(self.0), _mm512_srli_epi64::<32>(other.0));
+            _mm512_mask_blend_epi32(0xaaaa, _mm512_srli_epi64::<32>(even), odd)
+        })
+    }
+    #[inline(always)]
+    fn leading_zeros(self) -> Self {
+        Self::new(intrinsics!(_mm512_lzcnt_epi32(self.0)))
+    }
+}

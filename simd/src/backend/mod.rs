@@ -24,6 +24,7 @@ mod avx512;
 mod neon;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod sse;
+mod tables;
 
 use crate::{Isa, Kernel, Mask, Vector};
 
@@ -59,32 +60,81 @@ macro_rules! operators {
 }
 use operators;
 
-/// `Debug` that lists the lanes.
-macro_rules! debug_lanes {
+/// What vectors have beside operations: zeros as the default, and `Debug` that lists the lanes.
+macro_rules! vector_basics {
     ($([$($generics:tt)*] $V:ty),*) => {$(
-        impl<$($generics)*> fmt::Debug for $V {
-            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                self.to_block().0[..Self::LANES].fmt(f)
+        impl<$($generics)*> Sealed for $V {}
+        impl<$($generics)*> Default for $V {
+            #[inline(always)]
+            fn default() -> Self {
+                Self::splat(Default::default())
             }
         }
-        impl<$($generics)*> Sealed for $V {}
+        impl<$($generics)*> List for $V {
+            fn list(&self, list: &mut fmt::DebugList<'_, '_>) {
+                list.entries(&self.to_block().0[..Self::LANES]);
+            }
+        }
+        list_lanes!([$($generics)*] $V);
     )*};
 }
-use debug_lanes;
+use vector_basics;
 
-/// The bounds check of gathers: panics if the index of a lane that is on is not below `len`.
+/// What masks have beside operations: all false as the default, equality, and `Debug` that lists the lanes.
+macro_rules! mask_basics {
+    ([$($generics:tt)*] $M:ty) => {
+        impl<$($generics)*> Sealed for $M {}
+        impl<$($generics)*> Default for $M {
+            #[inline(always)]
+            fn default() -> Self {
+                Self::splat(false)
+            }
+        }
+        impl<$($generics)*> PartialEq for $M {
+            #[inline(always)]
+            fn eq(&self, other: &Self) -> bool {
+                self.bitmask() == other.bitmask()
+            }
+        }
+        impl<$($generics)*> List for $M {
+            fn list(&self, list: &mut fmt::DebugList<'_, '_>) {
+                list.entries((0..Self::LANES).map(|i| self.bitmask() >> i & 1 != 0));
+            }
+        }
+        list_lanes!([$($generics)*] $M);
+    };
+}
+use mask_basics;
+
+/// `Debug` as a list of the lanes, the same at every level.
+macro_rules! list_lanes {
+    ([$($generics:tt)*] $V:ty) => {
+        impl<$($generics)*> fmt::Debug for $V {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                let mut list = f.debug_list();
+                self.list(&mut list);
+                list.finish()
+            }
+        }
+    };
+}
+pub(crate) use list_lanes;
+
+/// The bounds check of gathers and scatters: panics if the index of a lane that is on is not below `len`.
 #[inline(always)]
-fn check_bounds<V: Vector>(len: usize, index: V::Index, mask: V::Mask) {
-    let len = u32::try_from(len).unwrap_or(u32::MAX);
-    if (mask & V::Index::splat(len).le(index)).any() {
-        out_of_bounds(len);
+pub(crate) fn check_bounds<V: Vector>(len: usize, index: V::Index, mask: V::Mask) {
+    // No index can be out of bounds of a longer slice.
+    if let Ok(len) = u32::try_from(len) {
+        if (mask & V::Index::splat(len).le(index)).any() {
+            out_of_bounds(len);
+        }
     }
 }
 
 #[cold]
 #[inline(never)]
 fn out_of_bounds(len: u32) -> ! {
-    panic!("gather: an index is out of bounds of a slice of {len}");
+    panic!("gather or scatter: an index is out of bounds of a slice of {len}");
 }
 
 /// Runs the kernel with the types of `isa`.

@@ -1,8 +1,9 @@
 //! aarch64, four lanes: Advanced SIMD.
 
-use super::{check_bounds, debug_lanes, intrinsics, operators};
+use super::tables::COMPRESS4;
+use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
 use crate::pair::Pair;
-use crate::vector::sealed::Sealed;
+use crate::vector::sealed::{List, Sealed};
 use crate::{Block, Float, Int, Integer, Isa, Level, Mask, Simd, Uint, Vector};
 use std::arch::aarch64::*;
 use std::fmt;
@@ -57,16 +58,33 @@ register! {
     /// All bits of a true lane are ones, all of a false lane zeros.
     Bool4(uint32x4_t);
 }
-debug_lanes!([] Float4, [] Int4, [] Uint4);
+vector_basics!([] Float4, [] Int4, [] Uint4);
+
+/// The bits of the lanes, whatever their type.
+macro_rules! lane_bits {
+    ($($V:ident, $x:ident: from $of:expr, to $to:expr;)*) => {$(
+        impl $V {
+            #[inline(always)]
+            fn of_lane_bits($x: uint32x4_t) -> Self {
+                Self($of)
+            }
+            #[inline(always)]
+            fn lane_bits(self) -> uint32x4_t {
+                let $x = self.0;
+                $to
+            }
+        }
+    )*};
+}
+lane_bits! {
+    Float4, x: from intrinsics!(vreinterpretq_f32_u32(x)), to intrinsics!(vreinterpretq_u32_f32(x));
+    Int4, x: from intrinsics!(vreinterpretq_s32_u32(x)), to intrinsics!(vreinterpretq_u32_s32(x));
+    Uint4, x: from x, to x;
+}
 
 // ---- Masks ----
 
-impl Sealed for Bool4 {}
-impl fmt::Debug for Bool4 {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:04b}", self.bitmask())
-    }
-}
+mask_basics!([] Bool4);
 
 operators!([] Bool4:
     BitAnd bitand BitAndAssign bitand_assign = vandq_u32;
@@ -121,6 +139,12 @@ impl Mask for Bool4 {
 }
 
 // ---- What all lanes share ----
+
+/// Table lookup by bytes; a number of a byte above 15 gives 0.
+#[inline(always)]
+fn lookup_bytes(x: uint32x4_t, bytes: uint8x16_t) -> uint32x4_t {
+    intrinsics!(vreinterpretq_u32_u8(vqtbl1q_u8(vreinterpretq_u8_u32(x), bytes)))
+}
 
 /// [`Vector`] of one lane type from its intrinsics: memory and comparisons in common, minimum and maximum given.
 macro_rules! vector {
@@ -187,6 +211,31 @@ macro_rules! vector {
             #[inline(always)]
             fn select(mask: Bool4, on_true: Self, on_false: Self) -> Self {
                 Self(intrinsics!($bsl(mask.0, on_true.0, on_false.0)))
+            }
+            #[inline(always)]
+            fn lookup(self, index: Uint4) -> Self {
+                // Numbers of bytes: four times the index, in four bytes, plus 0, 1, 2, 3.
+                let lane = (index & Uint4::splat(3)) * Uint4::splat(0x0404_0404) + Uint4::splat(0x0302_0100);
+                Self::of_lane_bits(lookup_bytes(self.lane_bits(), intrinsics!(vreinterpretq_u8_u32(lane.0))))
+            }
+            #[inline(always)]
+            fn interleave(self, other: Self) -> (Self, Self) {
+                let (a, b) = (self.lane_bits(), other.lane_bits());
+                let (low, high) = intrinsics!((vzip1q_u32(a, b), vzip2q_u32(a, b)));
+                (Self::of_lane_bits(low), Self::of_lane_bits(high))
+            }
+            #[inline(always)]
+            fn deinterleave(self, other: Self) -> (Self, Self) {
+                let (a, b) = (self.lane_bits(), other.lane_bits());
+                let (even, odd) = intrinsics!((vuzp1q_u32(a, b), vuzp2q_u32(a, b)));
+                (Self::of_lane_bits(even), Self::of_lane_bits(odd))
+            }
+            #[inline(always)]
+            fn compress(self, mask: Bool4) -> Self {
+                let bytes: *const [u8; 16] = &COMPRESS4[mask.bitmask() as usize % 16];
+                // SAFETY: sixteen bytes are there to read.
+                let bytes = unsafe { vld1q_u8(bytes.cast()) };
+                Self::of_lane_bits(lookup_bytes(self.lane_bits(), bytes))
             }
             #[inline(always)]
             fn eq(self, other: Self) -> Bool4 {
@@ -302,6 +351,18 @@ impl Float for Float4 {
 
     // The conversions saturate and take NaN to 0 by themselves.
     #[inline(always)]
+    fn mul_add_exact(self, b: Self, c: Self) -> Self {
+        Self(intrinsics!(vfmaq_f32(c.0, self.0, b.0)))
+    }
+    #[inline(always)]
+    fn rcp_approx(self) -> Self {
+        Self(intrinsics!(vrecpeq_f32(self.0)))
+    }
+    #[inline(always)]
+    fn rsqrt_approx(self) -> Self {
+        Self(intrinsics!(vrsqrteq_f32(self.0)))
+    }
+    #[inline(always)]
     fn to_int(self) -> Int4 {
         Int4(intrinsics!(vcvtq_s32_f32(self.0)))
     }
@@ -373,7 +434,18 @@ macro_rules! integer {
                 Self(intrinsics!($shift(self.0, vnegq_s32(shift_count(n)))))
             }
         }
-        impl Integer for $V {}
+        impl Integer for $V {
+            #[inline(always)]
+            fn shl_lanes(self, n: Uint4) -> Self {
+                let n = Int4::from_uint(n & Uint4::splat(31));
+                Self(intrinsics!($shift(self.0, n.0)))
+            }
+            #[inline(always)]
+            fn shr_lanes(self, n: Uint4) -> Self {
+                let n = Int4::from_uint(n & Uint4::splat(31));
+                Self(intrinsics!($shift(self.0, vnegq_s32(n.0))))
+            }
+        }
     };
 }
 integer!(Int4: vaddq_s32 vsubq_s32 vmulq_s32 vandq_s32 vorrq_s32 veorq_s32 vmvnq_s32 vshlq_s32);
@@ -446,4 +518,21 @@ vector! {
     }
 } }
 
-impl Uint for Uint4 {}
+impl Uint for Uint4 {
+    #[inline(always)]
+    fn mul_high(self, other: Self) -> Self {
+        Self(intrinsics! {
+            let low = vreinterpretq_u32_u64(vmull_u32(vget_low_u32(self.0), vget_low_u32(other.0)));
+            let high = vreinterpretq_u32_u64(vmull_high_u32(self.0, other.0));
+            vuzp2q_u32(low, high)
+        })
+    }
+    #[inline(always)]
+    fn count_ones(self) -> Self {
+        Self(intrinsics!(vpaddlq_u16(vpaddlq_u8(vcntq_u8(vreinterpretq_u8_u32(self.0))))))
+    }
+    #[inline(always)]
+    fn leading_zeros(self) -> Self {
+        Self(intrinsics!(vclzq_u32(self.0)))
+    }
+}

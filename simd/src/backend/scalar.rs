@@ -3,8 +3,9 @@
 //! Emulated vectors are pairs of pairs of these.
 
 use crate::pair::Pair;
-use crate::vector::sealed::Sealed;
+use crate::vector::sealed::{List, Sealed};
 use crate::{Block, Float, Int, Integer, Isa, Kernel, Lane, Level, Mask, Simd, Uint, Vector};
+use std::fmt;
 use std::num::Wrapping;
 
 // ---- The set ----
@@ -72,13 +73,52 @@ impl Mask for bool {
     }
 }
 
+impl List for bool {
+    fn list(&self, list: &mut fmt::DebugList<'_, '_>) {
+        list.entry(self);
+    }
+}
+
 // ---- What all lanes share ----
+
+/// Moving lanes about, where there is one.
+macro_rules! one_lane {
+    () => {
+        #[inline(always)]
+        fn lookup(self, _index: Self::Index) -> Self {
+            self
+        }
+        #[inline(always)]
+        fn interleave(self, other: Self) -> (Self, Self) {
+            (self, other)
+        }
+        #[inline(always)]
+        fn deinterleave(self, other: Self) -> (Self, Self) {
+            (self, other)
+        }
+        #[inline(always)]
+        fn compress(self, mask: bool) -> Self {
+            Self::select(mask, self, Self::default())
+        }
+        #[inline(always)]
+        fn expand(self, mask: bool) -> Self {
+            Self::select(mask, self, Self::default())
+        }
+    };
+}
+pub(super) use one_lane;
 
 /// [`Vector`] of one lane type, from a value and back.
 macro_rules! lane {
-    ($Lane:ty, $V:ty, $largest:expr, $of:expr, $get:expr) => {
+    ($Lane:ty, $V:ty, $smallest:expr, $largest:expr, $of:expr, $get:expr) => {
         impl Lane for $Lane {
             const LARGEST: Self = $largest;
+            const SMALLEST: Self = $smallest;
+        }
+        impl List for $V {
+            fn list(&self, list: &mut fmt::DebugList<'_, '_>) {
+                list.entry(&$get(*self));
+            }
         }
         impl Vector for $V {
             type Lane = $Lane;
@@ -119,6 +159,7 @@ macro_rules! lane {
             fn store_rows4([a, b, c, d]: [Self; 4], rows: &mut [[$Lane; 4]]) {
                 rows[0] = [$get(a), $get(b), $get(c), $get(d)];
             }
+            one_lane!();
             #[inline(always)]
             fn select(mask: bool, on_true: Self, on_false: Self) -> Self {
                 if mask { on_true } else { on_false }
@@ -159,9 +200,9 @@ impl Sealed for f32 {}
 impl Sealed for i32 {}
 impl Sealed for u32 {}
 impl<T> Sealed for Wrapping<T> {}
-lane!(f32, f32, f32::INFINITY, std::convert::identity, std::convert::identity);
-lane!(i32, Wrapping<i32>, i32::MAX, Wrapping, |w: Wrapping<i32>| w.0);
-lane!(u32, Wrapping<u32>, u32::MAX, Wrapping, |w: Wrapping<u32>| w.0);
+lane!(f32, f32, f32::NEG_INFINITY, f32::INFINITY, std::convert::identity, std::convert::identity);
+lane!(i32, Wrapping<i32>, i32::MIN, i32::MAX, Wrapping, |w: Wrapping<i32>| w.0);
+lane!(u32, Wrapping<u32>, u32::MIN, u32::MAX, Wrapping, |w: Wrapping<u32>| w.0);
 
 // ---- Floats ----
 
@@ -209,6 +250,10 @@ impl Float for f32 {
         c - self * b
     }
     #[inline(always)]
+    fn mul_add_exact(self, b: Self, c: Self) -> Self {
+        crate::soft::mul_add(self, b, c)
+    }
+    #[inline(always)]
     fn to_int(self) -> Wrapping<i32> {
         Wrapping(self as i32)
     }
@@ -240,9 +285,41 @@ impl Float for f32 {
 
 // ---- Integers ----
 
-impl Integer for Wrapping<i32> {}
-impl Integer for Wrapping<u32> {}
-impl Uint for Wrapping<u32> {}
+macro_rules! integer {
+    ($($Lane:ty),*) => {$(
+        impl Integer for Wrapping<$Lane> {
+            #[inline(always)]
+            fn shl_lanes(self, n: Wrapping<u32>) -> Self {
+                Self(self.0.wrapping_shl(n.0))
+            }
+            #[inline(always)]
+            fn shr_lanes(self, n: Wrapping<u32>) -> Self {
+                Self(self.0.wrapping_shr(n.0))
+            }
+        }
+    )*};
+}
+integer!(i32, u32);
+
+impl Uint for Wrapping<u32> {
+    #[inline(always)]
+    fn mul_high(self, other: Self) -> Self {
+        Self((u64::from(self.0) * u64::from(other.0) >> 32) as u32)
+    }
+    #[inline(always)]
+    fn count_ones(self) -> Self {
+        Self(self.0.count_ones())
+    }
+    #[inline(always)]
+    fn leading_zeros(self) -> Self {
+        Self(self.0.leading_zeros())
+    }
+    #[inline(always)]
+    fn trailing_zeros(self) -> Self {
+        Self(self.0.trailing_zeros())
+    }
+}
+
 impl Int for Wrapping<i32> {
     #[inline(always)]
     fn abs(self) -> Self {

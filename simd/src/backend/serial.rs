@@ -1,9 +1,10 @@
 //! Emulation that stays serial: every lane passes an empty assembly statement, which LLVM cannot vectorize across.
 
-use super::scalar;
+use super::{list_lanes, scalar};
 use crate::pair::Pair;
-use crate::vector::sealed::Sealed;
+use crate::vector::sealed::{List, Sealed};
 use crate::{Block, Float, Int, Integer, Isa, Kernel, Level, Simd, Uint, Vector};
+use std::fmt;
 use std::num::Wrapping;
 use std::ops::*;
 
@@ -63,10 +64,16 @@ fn fenced(mask: bool) -> bool {
 }
 
 /// A one-lane vector whose every result is fenced, and all that is loaded.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 #[repr(transparent)]
 pub struct Fenced<V>(V);
 impl<V> Sealed for Fenced<V> {}
+impl<V: List> List for Fenced<V> {
+    fn list(&self, list: &mut fmt::DebugList<'_, '_>) {
+        self.0.list(list);
+    }
+}
+list_lanes!([V: List] Fenced<V>);
 
 // ---- What all lanes share ----
 
@@ -160,6 +167,7 @@ impl<V: Fence> Vector for Fenced<V> {
     fn store_rows4([a, b, c, d]: [Self; 4], rows: &mut [[V::Lane; 4]]) {
         V::store_rows4([a.0, b.0, c.0, d.0], rows);
     }
+    scalar::one_lane!();
     #[inline(always)]
     fn select(mask: bool, on_true: Self, on_false: Self) -> Self {
         Self(V::select(mask, on_true.0, on_false.0).fence())
@@ -195,10 +203,10 @@ impl<V: Fence> Vector for Fenced<V> {
 }
 
 macro_rules! fenced {
-    ($V:ty: $($name:ident($($arg:ident),*);)*) => {$(
+    ($V:ty as $Trait:ident: $($name:ident($($arg:ident),*);)*) => {$(
         #[inline(always)]
         fn $name(self $(, $arg: Self)*) -> Self {
-            Self(<$V>::$name(self.0 $(, $arg.0)*).fence())
+            Self(<$V as $Trait>::$name(self.0 $(, $arg.0)*).fence())
         }
     )*};
 }
@@ -208,9 +216,9 @@ macro_rules! fenced {
 impl<V: Fence + Float<Int = Wrapping<i32>>> Float for Fenced<V> {
     type Int = Fenced<Wrapping<i32>>;
 
-    fenced! { V:
+    fenced! { V as Float:
         abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round();
-        mul_add(b, c); mul_sub(b, c); neg_mul_add(b, c);
+        mul_add(b, c); mul_sub(b, c); neg_mul_add(b, c); mul_add_exact(b, c);
     }
     #[inline(always)]
     fn mul_sign(self, sign: Self) -> Self {
@@ -248,8 +256,21 @@ impl<V: Fence + Float<Int = Wrapping<i32>>> Float for Fenced<V> {
 
 // ---- Integers ----
 
-impl<V: Fence + Integer> Integer for Fenced<V> {}
-impl Uint for Fenced<Wrapping<u32>> {}
+impl<V: Fence + Integer> Integer for Fenced<V> {
+    #[inline(always)]
+    fn shl_lanes(self, n: Self::Index) -> Self {
+        Self(self.0.shl_lanes(n.0).fence())
+    }
+    #[inline(always)]
+    fn shr_lanes(self, n: Self::Index) -> Self {
+        Self(self.0.shr_lanes(n.0).fence())
+    }
+}
+impl Uint for Fenced<Wrapping<u32>> {
+    fenced! { Wrapping<u32> as Uint:
+        mul_high(other); count_ones(); leading_zeros(); trailing_zeros();
+    }
+}
 impl Int for Fenced<Wrapping<i32>> {
     #[inline(always)]
     fn abs(self) -> Self {

@@ -1,8 +1,10 @@
 //! x86, four lanes: SSE2, SSE4.2, and the four-lane types of AVX2 and AVX-512, told apart by a marker.
 
-use super::{check_bounds, debug_lanes, intrinsics, operators};
+use super::tables::COMPRESS4;
+use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
 use crate::pair::Pair;
-use crate::vector::sealed::Sealed;
+use crate::vector::integer::shift_in_steps;
+use crate::vector::sealed::{List, Sealed};
 use crate::{Block, Float, Int, Integer, Isa, Level, Mask, Simd, Uint, Vector};
 #[cfg(target_arch = "x86")]
 use std::arch::x86::*;
@@ -18,8 +20,8 @@ use std::ops::*;
 pub trait Sse: Copy + Send + Sync + 'static {
     /// SSE4.1.
     const SSE41: bool;
-    /// FMA3.
-    const FMA: bool;
+    /// AVX2 and FMA3.
+    const AVX2: bool;
 }
 
 /// SSE and SSE2.
@@ -27,7 +29,7 @@ pub trait Sse: Copy + Send + Sync + 'static {
 pub struct Sse2;
 impl Sse for Sse2 {
     const SSE41: bool = false;
-    const FMA: bool = false;
+    const AVX2: bool = false;
 }
 
 /// x86-64-v2.
@@ -35,7 +37,7 @@ impl Sse for Sse2 {
 pub struct Sse42;
 impl Sse for Sse42 {
     const SSE41: bool = true;
-    const FMA: bool = false;
+    const AVX2: bool = false;
 }
 
 macro_rules! four_lanes_native {
@@ -94,7 +96,7 @@ register! {
     /// Four `u32`.
     Uint4(__m128i), x: from_ps intrinsics!(_mm_castps_si128(x)), to_ps intrinsics!(_mm_castsi128_ps(x));
 }
-debug_lanes!([I: Sse] Float4<I>, [I: Sse] Int4<I>, [I: Sse] Uint4<I>);
+vector_basics!([I: Sse] Float4<I>, [I: Sse] Int4<I>, [I: Sse] Uint4<I>);
 
 // ---- Masks ----
 
@@ -103,12 +105,7 @@ debug_lanes!([I: Sse] Float4<I>, [I: Sse] Int4<I>, [I: Sse] Uint4<I>);
 #[repr(transparent)]
 pub struct Bool4<I>(__m128, PhantomData<I>);
 
-impl<I: Sse> Sealed for Bool4<I> {}
-impl<I: Sse> fmt::Debug for Bool4<I> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:04b}", self.bitmask())
-    }
-}
+mask_basics!([I: Sse] Bool4<I>);
 
 operators!([I: Sse] Bool4<I>:
     BitAnd bitand BitAndAssign bitand_assign = _mm_and_ps;
@@ -192,6 +189,15 @@ fn lane1(x: __m128) -> __m128 {
     intrinsics!(_mm_shuffle_ps::<0b01>(x, x))
 }
 
+/// Orders streaming stores before whatever comes after them, also when what is stored panics.
+pub(super) struct StreamFence;
+impl Drop for StreamFence {
+    #[inline(always)]
+    fn drop(&mut self) {
+        intrinsics!(_mm_sfence());
+    }
+}
+
 /// [`Vector`] of one lane type: memory in common, comparisons given.
 macro_rules! vector {
     ($V:ident, $Lane:ty, $x:ident: splat $splat:expr, { $($given:tt)* }) => {
@@ -230,13 +236,24 @@ macro_rules! vector {
                 unsafe { _mm_store_ps(dst.cast(), self.ps()) }
             }
             #[inline(always)]
+            fn stream(dst: &mut [Block<$Lane>], mut f: impl FnMut(usize) -> Self) {
+                let _fence = StreamFence;
+                for (i, chunk) in crate::block::lanes_mut(dst).as_chunks_mut::<4>().0.iter_mut().enumerate() {
+                    let x = f(i).ps();
+                    // SAFETY: four elements are there to write, at a multiple of 16 bytes into blocks aligned to 64; the fence
+                    // comes before anybody else can look.
+                    unsafe { _mm_stream_ps(chunk.as_mut_ptr().cast(), x) }
+                }
+            }
+            #[inline(always)]
             fn gather_masked(src: &[$Lane], index: Uint4<I>, mask: Bool4<I>, or: Self) -> Self {
                 check_bounds::<Self>(src.len(), index, mask);
                 let (index, mut lanes) = (index.to_block(), or.to_block());
                 let mask = mask.bitmask();
                 for i in 0..4 {
                     if mask >> i & 1 != 0 {
-                        lanes.0[i] = src[index.0[i] as usize];
+                        // SAFETY: the index of a lane that is on was found in bounds.
+                        lanes.0[i] = unsafe { *src.get_unchecked(index.0[i] as usize) };
                     }
                 }
                 Self::load_block(&lanes, 0)
@@ -271,6 +288,57 @@ macro_rules! vector {
                         _mm_or_ps(_mm_and_ps(m, t), _mm_andnot_ps(m, f))
                     }
                 })
+            }
+            #[inline(always)]
+            fn lookup(self, index: Uint4<I>) -> Self {
+                let x = self.ps();
+                if const { I::AVX2 } {
+                    return Self::of_ps(intrinsics!(_mm_permutevar_ps(x, index.0)));
+                }
+                if const { I::SSE41 } {
+                    return Self::of_ps(intrinsics! {
+                        // Numbers of bytes: four times the index, in four bytes, plus 0, 1, 2, 3.
+                        let low_byte = _mm_setr_epi8(0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12);
+                        let lane = _mm_and_si128(_mm_shuffle_epi8(index.0, low_byte), _mm_set1_epi8(3));
+                        let byte = _mm_add_epi8(_mm_slli_epi32::<2>(lane), _mm_set1_epi32(0x0302_0100));
+                        _mm_castsi128_ps(_mm_shuffle_epi8(_mm_castps_si128(x), byte))
+                    });
+                }
+                let (table, index) = (self.to_block(), index.to_block());
+                Self::from_fn(|i| table.0[(index.0[i] % 4) as usize])
+            }
+            #[inline(always)]
+            fn interleave(self, other: Self) -> (Self, Self) {
+                let (a, b) = (self.ps(), other.ps());
+                let (low, high) = intrinsics!((_mm_unpacklo_ps(a, b), _mm_unpackhi_ps(a, b)));
+                (Self::of_ps(low), Self::of_ps(high))
+            }
+            #[inline(always)]
+            fn deinterleave(self, other: Self) -> (Self, Self) {
+                let (a, b) = (self.ps(), other.ps());
+                let (even, odd) = intrinsics! {
+                    (_mm_shuffle_ps::<0b10_00_10_00>(a, b), _mm_shuffle_ps::<0b11_01_11_01>(a, b))
+                };
+                (Self::of_ps(even), Self::of_ps(odd))
+            }
+            #[inline(always)]
+            fn compress(self, mask: Bool4<I>) -> Self {
+                let bits = mask.bitmask() as usize % 16;
+                if const { I::SSE41 } {
+                    let bytes: *const [u8; 16] = &COMPRESS4[bits];
+                    // SAFETY: sixteen bytes are there to read.
+                    let bytes = unsafe { _mm_loadu_si128(bytes.cast()) };
+                    let x = self.ps();
+                    return Self::of_ps(intrinsics!(_mm_castsi128_ps(_mm_shuffle_epi8(_mm_castps_si128(x), bytes))));
+                }
+                let (lanes, mut block, mut n) = (self.to_block(), Block::default(), 0);
+                for i in 0..4 {
+                    // Written always, moved on from where the mask is true: no branch.
+                    block.0[n % 8] = lanes.0[i];
+                    n += bits >> i & 1;
+                }
+                block.0[n % 8] = Default::default();
+                Self::load_block(&block, 0)
             }
             #[inline(always)]
             fn reduce_min(self) -> $Lane {
@@ -411,15 +479,32 @@ impl<I: Sse> Float for Float4<I> {
 
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
-        if const { I::FMA } { Self::new(intrinsics!(_mm_fmadd_ps(self.0, b.0, c.0))) } else { self * b + c }
+        if const { I::AVX2 } { Self::new(intrinsics!(_mm_fmadd_ps(self.0, b.0, c.0))) } else { self * b + c }
     }
     #[inline(always)]
     fn mul_sub(self, b: Self, c: Self) -> Self {
-        if const { I::FMA } { Self::new(intrinsics!(_mm_fmsub_ps(self.0, b.0, c.0))) } else { self * b - c }
+        if const { I::AVX2 } { Self::new(intrinsics!(_mm_fmsub_ps(self.0, b.0, c.0))) } else { self * b - c }
     }
     #[inline(always)]
     fn neg_mul_add(self, b: Self, c: Self) -> Self {
-        if const { I::FMA } { Self::new(intrinsics!(_mm_fnmadd_ps(self.0, b.0, c.0))) } else { c - self * b }
+        if const { I::AVX2 } { Self::new(intrinsics!(_mm_fnmadd_ps(self.0, b.0, c.0))) } else { c - self * b }
+    }
+
+    #[inline(always)]
+    fn mul_add_exact(self, b: Self, c: Self) -> Self {
+        if const { I::AVX2 } {
+            return self.mul_add(b, c);
+        }
+        let (a, b, c) = (self.to_block(), b.to_block(), c.to_block());
+        Self::from_fn(|i| crate::soft::mul_add(a.0[i], b.0[i], c.0[i]))
+    }
+    #[inline(always)]
+    fn rcp_approx(self) -> Self {
+        Self::new(intrinsics!(_mm_rcp_ps(self.0)))
+    }
+    #[inline(always)]
+    fn rsqrt_approx(self) -> Self {
+        Self::new(intrinsics!(_mm_rsqrt_ps(self.0)))
     }
 
     #[inline(always)]
@@ -482,7 +567,7 @@ pub(super) fn shift_count(n: usize) -> __m128i {
 
 /// Operators that `i32` and `u32` share, the shift to the right given.
 macro_rules! integer {
-    ($V:ident, $Lane:ty, $shift_right:ident) => {
+    ($V:ident, $Lane:ty, $shift_right:ident, $shift_lanes_right:ident) => {
         operators!([I: Sse] $V<I>:
             Add add AddAssign add_assign = _mm_add_epi32;
             Sub sub SubAssign sub_assign = _mm_sub_epi32;
@@ -532,7 +617,24 @@ macro_rules! integer {
                 Self::new(intrinsics!($shift_right(self.0, shift_count(n))))
             }
         }
-        impl<I: Sse> Integer for $V<I> {}
+        impl<I: Sse> Integer for $V<I> {
+            #[inline(always)]
+            fn shl_lanes(self, n: Uint4<I>) -> Self {
+                if const { I::AVX2 } {
+                    Self::new(intrinsics!(_mm_sllv_epi32(self.0, _mm_and_si128(n.0, _mm_set1_epi32(31)))))
+                } else {
+                    shift_in_steps(self, n, |x, n| x << n)
+                }
+            }
+            #[inline(always)]
+            fn shr_lanes(self, n: Uint4<I>) -> Self {
+                if const { I::AVX2 } {
+                    Self::new(intrinsics!($shift_lanes_right(self.0, _mm_and_si128(n.0, _mm_set1_epi32(31)))))
+                } else {
+                    shift_in_steps(self, n, |x, n| x >> n)
+                }
+            }
+        }
         impl<I: Sse> $V<I> {
             #[inline(always)]
             fn first(self) -> $Lane {
@@ -541,8 +643,8 @@ macro_rules! integer {
         }
     };
 }
-integer!(Int4, i32, _mm_sra_epi32);
-integer!(Uint4, u32, _mm_srl_epi32);
+integer!(Int4, i32, _mm_sra_epi32, _mm_srav_epi32);
+integer!(Uint4, u32, _mm_srl_epi32, _mm_srlv_epi32);
 
 vector! { Int4, i32, x: splat _mm_set1_epi32(x), {
     #[inline(always)]
@@ -632,4 +734,13 @@ vector! { Uint4, u32, x: splat _mm_set1_epi32(x as i32), {
     }
 } }
 
-impl<I: Sse> Uint for Uint4<I> {}
+impl<I: Sse> Uint for Uint4<I> {
+    #[inline(always)]
+    fn mul_high(self, other: Self) -> Self {
+        Self::new(intrinsics! {
+            let even = _mm_mul_epu32(self.0, other.0);
+            let odd = _mm_mul_epu32(_mm_srli_epi64::<32>(self.0), _mm_srli_epi64::<32>(other.0));
+            _mm_or_si128(_mm_srli_epi64::<32>(even), _mm_and_si128(odd, _mm_setr_epi32(0, -1, 0, -1)))
+        })
+    }
+}

@@ -22,6 +22,11 @@ operations! {
         if fused { (-a).mul_add(b, c) } else { c - a * b }
     }
 
+    neg_mul_sub(a: float, b: float, c: float) -> float { a.neg_mul_sub(b, c) } is relaxed(fused) {
+        if fused { (-a).mul_add(b, -c) } else { -(a * b) - c }
+    }
+    mul_add_exact(a: float, b: float, c: float) -> float { a.mul_add_exact(b, c) } is { a.mul_add(b, c) }
+
     eq(a: float, b: float) -> mask { a.eq(b) } is { a == b }
     ne(a: float, b: float) -> mask { a.ne(b) } is { a != b }
     lt(a: float, b: float) -> mask { a.lt(b) } is { a < b }
@@ -51,6 +56,8 @@ operations! {
     ceil(a: float) -> float { a.ceil() } is { a.ceil() }
     trunc(a: float) -> float { a.trunc() } is { a.trunc() }
     round(a: float) -> float { a.round() } is { a.round_ties_even() }
+
+    fract(a: float) -> float { a.fract() } is { a - a.floor() }
 
     to_int(a: float) -> int { a.to_int() } is { a as i32 }
     to_uint(a: float) -> uint { a.to_uint() } is { a as u32 }

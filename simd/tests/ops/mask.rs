@@ -13,6 +13,10 @@ struct Observed {
     none: bool,
     count: usize,
     first: Option<usize>,
+    last: Option<usize>,
+    set_lanes: Vec<usize>,
+    /// With the other mask, itself and the default.
+    equal: [bool; 3],
     not: u32,
     /// `&`, `|`, `^`, then the assigning forms.
     with_other: [u32; 6],
@@ -33,6 +37,9 @@ fn observe_all<F: Float>(pairs: &[(u32, u32)]) -> Vec<Observed> {
             none: a.none(),
             count: a.count(),
             first: a.first(),
+            last: a.last(),
+            set_lanes: a.set_lanes().collect(),
+            equal: [a == b, a == !!a, a == F::Mask::default()],
             not: (!a).bitmask(),
             with_other: [a & b, a | b, a ^ b, and, or, xor].map(F::Mask::bitmask),
         }
@@ -61,6 +68,9 @@ fn expected((a, b): (u32, u32), lanes: usize) -> Observed {
         none: a == 0,
         count: (0..lanes).filter(|i| a >> i & 1 == 1).count(),
         first: (0..lanes).find(|i| a >> i & 1 == 1),
+        last: (0..lanes).rev().find(|i| a >> i & 1 == 1),
+        set_lanes: (0..lanes).filter(|i| a >> i & 1 == 1).collect(),
+        equal: [a == b, true, a == 0],
         not: a ^ all,
         with_other: [a & b, a | b, a ^ b, a & b, a | b, a ^ b],
     }

@@ -33,7 +33,10 @@ macro_rules! for_all_lane_types {
         }
     )*};
 }
-for_all_lane_types!(load_store splat blocks rows gather gather_out_of_bounds from_fn_to_block_lane);
+for_all_lane_types!(
+    load_store splat blocks rows gather gather_out_of_bounds from_fn_to_block_lane
+    partial masked scatter stream other_rows
+);
 
 struct LoadStore<'a, L>(&'a [L], &'a mut [L]);
 impl<L: AnyLane> Job<L> for LoadStore<'_, L> {
@@ -121,6 +124,73 @@ impl<L: AnyLane> Job<L> for FromFn<'_, L> {
     }
 }
 
+/// Loads all there is and stores what fits.
+struct Partial<'a, L>(&'a [L], &'a mut [L]);
+impl<L: AnyLane> Job<L> for Partial<'_, L> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector<Lane = L>>(self) {
+        V::load_partial(self.0).store_partial(self.1);
+    }
+}
+
+/// Loads the lanes of one mask, 0 elsewhere, and stores those of another.
+struct Masked<'a, L>(&'a [L], u32, &'a mut [L], u32);
+impl<L: AnyLane> Job<L> for Masked<'_, L> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector<Lane = L>>(self) {
+        let x = V::load_masked(self.0, V::Mask::from_bitmask(self.1), V::default());
+        x.store_masked(self.2, V::Mask::from_bitmask(self.3));
+    }
+}
+
+/// With a mask, else all lanes.
+struct Scatter<'a, L>(&'a [L], &'a [u32], Option<u32>, &'a mut [L]);
+impl<L: AnyLane> Job<L> for Scatter<'_, L> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector<Lane = L>>(self) {
+        let (x, index) = (V::load(self.0), V::Index::load(self.1));
+        match self.2 {
+            Some(mask) => x.scatter_masked(self.3, index, V::Mask::from_bitmask(mask)),
+            None => x.scatter(self.3, index),
+        }
+    }
+}
+
+struct Stream<'a, L>(&'a [L], &'a mut [Block<L>]);
+impl<L: AnyLane> Job<L> for Stream<'_, L> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector<Lane = L>>(self) {
+        V::stream(self.1, |i| V::load(&self.0[i * V::LANES..]));
+    }
+}
+
+/// Rows of 2, 3 and 8 to columns and back to other rows.
+struct OtherRows<'a, L> {
+    rows2: (&'a [[L; 2]], &'a mut [[L; 2]]),
+    rows3: (&'a [[L; 3]], &'a mut [[L; 3]]),
+    rows8: (&'a [[L; 8]], &'a mut [[L; 8]]),
+    columns: &'a mut Vec<L>,
+}
+impl<L: AnyLane> Job<L> for OtherRows<'_, L> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Vector<Lane = L>>(self) {
+        let columns2 = V::load_rows2(self.rows2.0);
+        let columns3 = V::load_rows3(self.rows3.0);
+        let columns8 = V::load_rows8(self.rows8.0);
+        for column in columns2.iter().chain(&columns3).chain(&columns8) {
+            self.columns.extend_from_slice(&column.to_block().0[..V::LANES]);
+        }
+        V::store_rows2(columns2, self.rows2.1);
+        V::store_rows3(columns3, self.rows3.1);
+        V::store_rows8(columns8, self.rows8.1);
+    }
+}
+
 struct OneLane(usize);
 impl<L: AnyLane> Job<L> for OneLane {
     type Output = ();
@@ -202,6 +272,110 @@ mod generic {
             assert!(panics(|| L::run(level, width, LoadRows(&rows[..short], &mut columns))), "{level}, {width:?}");
             assert!(panics(|| L::run(level, width, StoreRows(&columns, &mut back[..short]))), "{level}, {width:?}");
         }
+    }
+
+    pub fn partial<L: AnyLane>(level: Level, width: Width) {
+        let (lanes, src) = (width.lanes(), numbers::<L>(40));
+        for n in 0..20 {
+            for m in 0..20 {
+                let mut dst = src[20..].to_vec();
+                L::run(level, width, Partial(&src[..n], &mut dst[..m]));
+                let mut expected = src[20..].to_vec();
+                for i in 0..m.min(lanes) {
+                    expected[i] = if i < n { src[i] } else { L::default() };
+                }
+                assert_eq!(bits(&dst), bits(&expected), "{level}, {width:?}, {n} to {m}");
+            }
+        }
+    }
+
+    pub fn masked<L: AnyLane>(level: Level, width: Width) {
+        let (lanes, src) = (width.lanes(), numbers::<L>(32));
+        let needed = |mask: u32| (0..lanes).filter(|i| mask >> i & 1 == 1).max().map_or(0, |i| i + 1);
+        let mut random = Random(5);
+        for _ in 0..300 {
+            let (from, to) = (random.bits() & random.bits() >> (random.bits() % 16), random.bits());
+            // Exactly as long as the masks ask for.
+            let mut dst = src[16..][..needed(to)].to_vec();
+            L::run(level, width, Masked(&src[..needed(from)], from, &mut dst, to));
+            for (i, x) in dst.iter().enumerate() {
+                let loaded = if from >> i & 1 == 1 { src[i] } else { L::default() };
+                let expected = if to >> i & 1 == 1 { loaded } else { src[16 + i] };
+                assert_eq!(x.bits(), expected.bits(), "{level}, {width:?}, lane {i}, {from:x} to {to:x}");
+            }
+            let short = needed(to).saturating_sub(1);
+            if short < needed(to) {
+                let before = src[16..][..short].to_vec();
+                let mut dst = before.clone();
+                assert!(panics(|| L::run(level, width, Masked(&src, u32::MAX, &mut dst, to))), "{level}, {width:?}");
+                assert_eq!(bits(&dst), bits(&before), "{level}, {width:?}: written before the check");
+                let mut dst = src.clone();
+                assert!(panics(|| L::run(level, width, Masked(&src[..short], to, &mut dst, 0))), "{level}, {width:?}");
+            }
+        }
+    }
+
+    pub fn scatter<L: AnyLane>(level: Level, width: Width) {
+        let (lanes, src) = (width.lanes(), numbers::<L>(60));
+        let mut random = Random(6);
+        for round in 0..200 {
+            let (mut dst, mut expected) = (src[20..57].to_vec(), src[20..57].to_vec());
+            // Few places, so that lanes meet.
+            let places = if round % 2 == 0 { 37 } else { 5 };
+            let mask = if round % 3 == 0 { None } else { Some(random.bits()) };
+            let on = |i: usize| mask.is_none_or(|mask| mask >> i & 1 == 1);
+            let wild = [37, u32::MAX, 1 << 31, 1 << 30];
+            let index: Vec<u32> =
+                (0..16).map(|i| if on(i) { random.bits() % places } else { wild[i % wild.len()] }).collect();
+            for i in (0..lanes).filter(|&i| on(i)) {
+                expected[index[i] as usize] = src[i];
+            }
+            L::run(level, width, Scatter(&src, &index, mask, &mut dst));
+            assert_eq!(bits(&dst), bits(&expected), "{level}, {width:?}, {index:?}, mask {mask:x?}");
+        }
+        for lane in 0..lanes {
+            for (len, bad) in [(37, 37), (37, u32::MAX), (37, 1 << 31), (1, 1), (0, 0)] {
+                let mut index = [0; 16];
+                index[lane] = bad;
+                let mut dst = src[..len].to_vec();
+                let job = Scatter(&src[20..], &index, Some(1 << lane), &mut dst);
+                assert!(panics(|| L::run(level, width, job)), "{level}, {width:?}, lane {lane}: {bad} of {len}");
+                assert_eq!(bits(&dst), bits(&src[..len]), "{level}, {width:?}: written before the check");
+            }
+        }
+    }
+
+    pub fn stream<L: AnyLane>(level: Level, width: Width) {
+        let src = numbers::<L>(16 * 5);
+        for blocks in 0..=5 {
+            let mut dst = vec![Block::default(); blocks];
+            L::run(level, width, Stream(&src, &mut dst));
+            let written: Vec<u32> = dst.iter().flat_map(|block| bits(&block.0)).collect();
+            assert_eq!(written, bits(&src[..16 * blocks]), "{level}, {width:?}");
+        }
+    }
+
+    pub fn other_rows<L: AnyLane>(level: Level, width: Width) {
+        let (lanes, flat) = (width.lanes(), numbers::<L>(8 * 16));
+        let (rows2, rows3, rows8) = (flat.as_chunks::<2>().0, flat.as_chunks::<3>().0, flat.as_chunks::<8>().0);
+        let (mut back2, mut back3, mut back8) =
+            (vec![[L::default(); 2]; lanes], vec![[L::default(); 3]; lanes], vec![[L::default(); 8]; lanes]);
+        let mut columns = Vec::new();
+        let job = OtherRows {
+            rows2: (rows2, &mut back2),
+            rows3: (rows3, &mut back3),
+            rows8: (rows8, &mut back8),
+            columns: &mut columns,
+        };
+        L::run(level, width, job);
+        let mut expected = Vec::new();
+        (0..2).for_each(|k| expected.extend(rows2[..lanes].iter().map(|row| row[k])));
+        (0..3).for_each(|k| expected.extend(rows3[..lanes].iter().map(|row| row[k])));
+        (0..8).for_each(|k| expected.extend(rows8[..lanes].iter().map(|row| row[k])));
+        assert_eq!(bits(&columns), bits(&expected), "{level}, {width:?}");
+        assert_eq!(bits(back2.as_flattened()), bits(&flat[..2 * lanes]), "{level}, {width:?}: rows of 2");
+        assert_eq!(bits(back3.as_flattened()), bits(&flat[..3 * lanes]), "{level}, {width:?}: rows of 3");
+        assert_eq!(bits(back8.as_flattened()), bits(&flat[..8 * lanes]), "{level}, {width:?}: rows of 8");
     }
 
     pub fn gather<L: AnyLane>(level: Level, width: Width) {
