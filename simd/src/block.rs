@@ -23,7 +23,7 @@ impl<T: Copy + Default> Default for Block<T> {
 #[inline(always)]
 pub(crate) fn lanes_mut<T>(blocks: &mut [Block<T>]) -> &mut [T] {
     let (lanes, n) = (blocks.as_mut_ptr().cast(), 16 * blocks.len());
-    // SAFETY: a block is sixteen lanes and, if those have 4 bytes, nothing else.
     const { assert!(size_of::<T>() == 4) }
+    // SAFETY: a block is sixteen lanes and, as those have 4 bytes, nothing else.
     unsafe { std::slice::from_raw_parts_mut(lanes, n) }
 }

@@ -12,7 +12,7 @@ pub(crate) fn mul_add(a: f32, b: f32, c: f32) -> f32 {
     let error = (product - (sum - virtual_c)) + (c - virtual_c);
     let bits = sum.to_bits();
     // NaN errors come with infinite sums, and those are final.
-    if (error > 0.0 || error < 0.0) && bits & 1 == 0 {
+    if error.abs() > 0.0 && bits & 1 == 0 {
         let away_from_zero = (error > 0.0) == (sum > 0.0);
         return f64::from_bits(if away_from_zero { bits + 1 } else { bits - 1 }) as f32;
     }

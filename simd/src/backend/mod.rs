@@ -1,4 +1,5 @@
-//! One file per instruction set, the same sections in the same order: the set, masks, what all lanes share, floats, integers.
+//! One folder per instruction set, the same files in each: `mod` (the set, its registers and masks), `lanes` (what vectors of all
+//! lane types share), `float`, `integer`. Emulation is a file: [`scalar`], and [`serial`] made of it.
 //!
 //! # Why this is sound
 //!
@@ -124,10 +125,10 @@ pub(crate) use list_lanes;
 #[inline(always)]
 pub(crate) fn check_bounds<V: Vector>(len: usize, index: V::Index, mask: V::Mask) {
     // No index can be out of bounds of a longer slice.
-    if let Ok(len) = u32::try_from(len) {
-        if (mask & V::Index::splat(len).le(index)).any() {
-            out_of_bounds(len);
-        }
+    if let Ok(len) = u32::try_from(len)
+        && (mask & V::Index::splat(len).le(index)).any()
+    {
+        out_of_bounds(len);
     }
 }
 

@@ -304,7 +304,7 @@ integer!(i32, u32);
 impl Uint for Wrapping<u32> {
     #[inline(always)]
     fn mul_high(self, other: Self) -> Self {
-        Self((u64::from(self.0) * u64::from(other.0) >> 32) as u32)
+        Self(((u64::from(self.0) * u64::from(other.0)) >> 32) as u32)
     }
     #[inline(always)]
     fn count_ones(self) -> Self {

@@ -256,9 +256,7 @@ pub trait Vector: Sealed + List + Copy + Debug + Default + Send + Sync + 'static
             for i in 0..n / 2 {
                 (shuffled[2 * i], shuffled[2 * i + 1]) = rows[i].interleave(rows[i + n / 2]);
             }
-            for i in 0..n {
-                rows[i] = shuffled[i];
-            }
+            rows.copy_from_slice(&shuffled[..n]);
             pass *= 2;
         }
     }
