@@ -34,7 +34,8 @@
 //!
 //! - [`Level`]: an instruction set that this CPU has. [`Level::best`], [`Level::from_env`] (`SIMD_LEVEL`), [`Level::available`].
 //! - [`kernel!`], [`dispatch!`]: run code at a level; both are sugar for [`Kernel`] and [`Level::run`].
-//! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Mask`]: what they can do.
+//! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Mask`]: what they can do;
+//!   [`operations`]: all of it in one table.
 //! - [`Block`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
 //!
 //! # Inlining
@@ -61,6 +62,7 @@ mod backend;
 mod block;
 mod level;
 pub mod math;
+pub mod operations;
 mod pair;
 mod prefetch;
 mod soft;

@@ -39,7 +39,7 @@ mod int {
         shr_lanes(a: int, n: uint) -> int { a.shr_lanes(n) } is { a.wrapping_shr(n) }
         saturating_add(a: int, b: int) -> int { Int::saturating_add(a, b) } is { i32::saturating_add(a, b) }
         saturating_sub(a: int, b: int) -> int { Int::saturating_sub(a, b) } is { i32::saturating_sub(a, b) }
-        mul_high(a: int, b: int) -> int { Int::mul_high(a, b) } is { (i64::from(a) * i64::from(b) >> 32) as i32 }
+        mul_high(a: int, b: int) -> int { Int::mul_high(a, b) } is { ((i64::from(a) * i64::from(b)) >> 32) as i32 }
         count_ones(a: int) -> uint { Int::count_ones(a) } is { i32::count_ones(a) }
         leading_zeros(a: int) -> uint { Int::leading_zeros(a) } is { i32::leading_zeros(a) }
         trailing_zeros(a: int) -> uint { Int::trailing_zeros(a) } is { i32::trailing_zeros(a) }
@@ -82,7 +82,7 @@ mod uint {
         shr_lanes(a: uint, n: uint) -> uint { a.shr_lanes(n) } is { a.wrapping_shr(n) }
         saturating_add(a: uint, b: uint) -> uint { Uint::saturating_add(a, b) } is { u32::saturating_add(a, b) }
         saturating_sub(a: uint, b: uint) -> uint { Uint::saturating_sub(a, b) } is { u32::saturating_sub(a, b) }
-        mul_high(a: uint, b: uint) -> uint { Uint::mul_high(a, b) } is { (u64::from(a) * u64::from(b) >> 32) as u32 }
+        mul_high(a: uint, b: uint) -> uint { Uint::mul_high(a, b) } is { ((u64::from(a) * u64::from(b)) >> 32) as u32 }
         count_ones(a: uint) -> uint { Uint::count_ones(a) } is { u32::count_ones(a) }
         leading_zeros(a: uint) -> uint { Uint::leading_zeros(a) } is { u32::leading_zeros(a) }
         trailing_zeros(a: uint) -> uint { Uint::trailing_zeros(a) } is { u32::trailing_zeros(a) }

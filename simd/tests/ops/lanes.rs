@@ -210,7 +210,7 @@ fn check_moves<L: AnyLane>(a: &[u32; 16], b: &[u32; 16], index: &[u32; 16], n: u
 
         let on: Vec<usize> = (0..lanes).filter(|i| mask >> i & 1 == 1).collect();
         let both: Vec<L> = a[..lanes].iter().chain(&b[..lanes]).copied().collect();
-        let zipped = |i: usize| if i % 2 == 0 { a[i / 2] } else { b[i / 2] };
+        let zipped = |i: usize| if i.is_multiple_of(2) { a[i / 2] } else { b[i / 2] };
         let zero = L::default();
         let functions: [&dyn Fn(usize) -> L; 12] = [
             &|i| a[index[i] as usize % lanes],

@@ -1,0 +1,10 @@
+//! All operations in one table: what they mean, what they do with NaN, and what they compile to.
+//!
+//! Every operation returns the same bits on every level and at every width, with two exceptions: those marked *relaxed*, and which of
+//! the many NaNs a NaN result is. No level flushes denormals to zero or fuses what is written apart.
+//!
+//! The columns of levels are for vectors as wide as the level's registers: four lanes for SSE, NEON and wasm, eight for AVX2, sixteen for
+//! AVX-512; wider vectors are made of those. *By lanes*: in scalar code, through memory. *Composed*: of others in this table. Instructions
+//! are those for `f32` or for all lane types, `...` stands for their kin. The methods' own documentation says more.
+//!
+#![doc = include_str!("vector/operations.md")]
