@@ -35,7 +35,7 @@
 //! - [`Level`]: an instruction set that this CPU has. [`Level::best`], [`Level::from_env`] (`SIMD_LEVEL`), [`Level::available`].
 //! - [`kernel!`], [`dispatch!`]: run code at a level; both are sugar for [`Kernel`] and [`Level::run`].
 //! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Mask`]: what they can do.
-//! - [`Block`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
+//! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
 //!
 //! # Inlining
 //!
@@ -57,6 +57,7 @@
 //! let level = simd::Level(simd::Isa::Avx512); // private field
 //! ```
 
+mod aligned;
 mod backend;
 mod block;
 mod level;
@@ -65,6 +66,7 @@ mod pair;
 mod prefetch;
 mod vector;
 
+pub use aligned::AlignedVec;
 pub use block::Block;
 pub use level::{Isa, Kernel, Level, LevelError};
 pub use prefetch::prefetch;
