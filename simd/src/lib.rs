@@ -36,6 +36,7 @@
 //! - [`kernel!`], [`dispatch!`]: run code at a level; both are sugar for [`Kernel`] and [`Level::run`].
 //! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Mask`]: what they can do.
 //! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
+//! - [`interop`]: conversions for bytemuck, glam, wide and pulp, each a feature.
 //!
 //! # Inlining
 //!
@@ -60,6 +61,7 @@
 mod aligned;
 mod backend;
 mod block;
+pub mod interop;
 mod level;
 pub mod math;
 mod pair;
