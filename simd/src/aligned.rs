@@ -1,6 +1,7 @@
 //! A growable array aligned to a cache line.
 
 use crate::Block;
+use alloc::vec::Vec;
 use std::fmt;
 use std::marker::PhantomData;
 use std::mem::{MaybeUninit, size_of};

@@ -1,7 +1,10 @@
 //! Levels: which instruction set to use, found, listed, parsed, forced; and the way into it.
 
 use crate::{Simd, backend};
+#[cfg(feature = "alloc")]
+use alloc::{borrow::ToOwned, string::String, vec::Vec};
 use std::fmt;
+#[cfg(feature = "alloc")]
 use std::str::FromStr;
 
 /// An instruction set that this crate knows, whether or not this CPU has it.
@@ -53,10 +56,18 @@ impl Isa {
         }
     }
 
+    #[cfg_attr(not(feature = "std"), allow(clippy::nonminimal_bool, reason = "constants, without detection"))]
     fn detected(self) -> bool {
         #[allow(unused_macros, reason = "there are architectures with emulation only")]
         macro_rules! cpu_has {
-            ($detect:ident: $($feature:tt)*) => { $(std::arch::$detect!($feature))&&* };
+            ($detect:ident: $($feature:tt)*) => { $(cpu_has!(@ $detect $feature))&&* };
+            (@ $detect:ident $feature:tt) => {{
+                #[cfg(feature = "std")]
+                let has = std::arch::$detect!($feature);
+                #[cfg(not(feature = "std"))]
+                let has = cfg!(target_feature = $feature);
+                has
+            }};
         }
         match self {
             Self::Scalar => true,
@@ -98,6 +109,7 @@ impl fmt::Display for Isa {
 /// let level = Level::best();
 /// println!("{level}: {} lanes", level.isa().lanes());
 /// assert!(Level::new(Isa::Scalar).is_some());
+/// # #[cfg(feature = "alloc")]
 /// assert!("sse5".parse::<Level>().is_err());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -105,6 +117,7 @@ pub struct Level(Isa);
 
 impl Level {
     /// The environment variable that forces a level: see [`Level::from_env`].
+    #[cfg(feature = "std")]
     pub const ENV: &'static str = "SIMD_LEVEL";
     /// Plain Rust: every machine has it.
     pub const SCALAR: Self = Self(Isa::Scalar);
@@ -114,7 +127,7 @@ impl Level {
         Self(isa)
     }
 
-    /// This instruction set, if the CPU has it.
+    /// This instruction set, if the CPU has it. Without feature `std`, if all CPUs that this was compiled for have it.
     #[must_use]
     pub fn new(isa: Isa) -> Option<Self> {
         isa.detected().then_some(Self(isa))
@@ -135,6 +148,7 @@ impl Level {
     ///
     /// # Errors
     /// [`LevelError`] when the name is unknown or this CPU lacks that level.
+    #[cfg(feature = "std")]
     pub fn from_env() -> Result<Self, LevelError> {
         match std::env::var(Self::ENV) {
             Ok(name) if !name.is_empty() && name != "auto" => name.parse(),
@@ -170,6 +184,7 @@ impl fmt::Display for Level {
     }
 }
 
+#[cfg(feature = "alloc")]
 impl FromStr for Level {
     type Err = LevelError;
 
@@ -181,6 +196,7 @@ impl FromStr for Level {
 }
 
 /// Why a level cannot be had.
+#[cfg(feature = "alloc")]
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LevelError {
@@ -190,6 +206,7 @@ pub enum LevelError {
     Unavailable(Isa),
 }
 
+#[cfg(feature = "alloc")]
 impl fmt::Display for LevelError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names = |levels: Vec<&str>| levels.join(", ");
@@ -205,6 +222,7 @@ impl fmt::Display for LevelError {
     }
 }
 
+#[cfg(feature = "alloc")]
 impl std::error::Error for LevelError {}
 
 /// Code written once, to be run at any [`Level`].

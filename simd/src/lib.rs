@@ -38,6 +38,13 @@
 //! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
 //! - [`interop`]: conversions for bytemuck, glam, wide and pulp, each a feature.
 //!
+//! # Features
+//!
+//! - `std` (default): detection of the CPU's levels, and [`Level::from_env`]. Without it the crate is `no_std`, and the levels are
+//!   those that the whole program is compiled for, as with `-C target-feature=+avx2`: `core` cannot detect.
+//! - `alloc` (part of `std`): [`AlignedVec`], levels by name, [`LevelError`].
+//! - `bytemuck`, `glam`, `wide`, `pulp`: conversions, see [`interop`].
+//!
 //! # Inlining
 //!
 //! Every generic function on the way from `kernel!` to the loop must be `#[inline(always)]`. What is not inlined is compiled
@@ -58,6 +65,15 @@
 //! let level = simd::Level(simd::Isa::Avx512); // private field
 //! ```
 
+#![cfg_attr(not(any(feature = "std", test)), no_std)]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+// What the modules take from `std` is in `core` too, except where they ask for the feature.
+#[cfg(not(feature = "std"))]
+extern crate core as std;
+
+#[cfg(feature = "alloc")]
 mod aligned;
 mod backend;
 mod block;
@@ -68,8 +84,11 @@ mod pair;
 mod prefetch;
 mod vector;
 
+#[cfg(feature = "alloc")]
 pub use aligned::AlignedVec;
 pub use block::Block;
-pub use level::{Isa, Kernel, Level, LevelError};
+#[cfg(feature = "alloc")]
+pub use level::LevelError;
+pub use level::{Isa, Kernel, Level};
 pub use prefetch::prefetch;
 pub use vector::{Float, Int, Integer, Lane, Mask, Simd, Uint, Vector};

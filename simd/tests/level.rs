@@ -1,5 +1,7 @@
 //! Levels by name, from the environment, and the texts of the errors.
 
+#![cfg(feature = "std")]
+
 use simd::{Isa, Level, LevelError};
 
 #[test]

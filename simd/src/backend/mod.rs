@@ -15,6 +15,7 @@
 
 pub(crate) mod scalar;
 pub(crate) mod serial;
+mod soft;
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 mod avx2;
