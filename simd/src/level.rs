@@ -6,6 +6,8 @@ use alloc::{borrow::ToOwned, string::String, vec::Vec};
 use std::fmt;
 #[cfg(feature = "alloc")]
 use std::str::FromStr;
+#[cfg(feature = "std")]
+use std::sync::OnceLock;
 
 /// An instruction set that this crate knows, whether or not this CPU has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -53,6 +55,17 @@ impl Isa {
             Self::Avx2 => 8,
             Self::Avx512 => 16,
             _ => 4,
+        }
+    }
+
+    /// Whether this build has code for it: a cargo feature, or what the whole program is compiled for.
+    #[allow(clippy::match_like_matches_macro, reason = "constants")]
+    const fn compiled(self) -> bool {
+        match self {
+            Self::Sse42 => cfg!(any(feature = "sse4_2", target_feature = "sse4.2")),
+            Self::Avx2 => cfg!(any(feature = "avx2", target_feature = "avx2")),
+            Self::Avx512 => cfg!(any(feature = "avx512", target_feature = "avx512f")),
+            _ => true,
         }
     }
 
@@ -127,10 +140,12 @@ impl Level {
         Self(isa)
     }
 
-    /// This instruction set, if the CPU has it. Without feature `std`, if all CPUs that this was compiled for have it.
+    /// This instruction set, if the CPU has it and this build does not leave it out.
+    ///
+    /// Without feature `std`: if all CPUs that this was compiled for have it.
     #[must_use]
     pub fn new(isa: Isa) -> Option<Self> {
-        isa.detected().then_some(Self(isa))
+        (isa.compiled() && isa.detected()).then_some(Self(isa))
     }
 
     /// All that this CPU has, slowest first.
@@ -154,6 +169,27 @@ impl Level {
             Ok(name) if !name.is_empty() && name != "auto" => name.parse(),
             _ => Ok(Self::best()),
         }
+    }
+
+    /// [`Level::from_env`], asked once per process: further calls cost a few instructions, and later changes of the environment
+    /// change nothing.
+    ///
+    /// ```
+    /// // What `SIMD_LEVEL` says; if that cannot be had, say so and take the best.
+    /// let level = simd::Level::cached().unwrap_or_else(|error| {
+    ///     eprintln!("{error}");
+    ///     simd::Level::best()
+    /// });
+    /// # assert_eq!(simd::Level::cached(), Ok(level));
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`Level::from_env`], the same at each call: a level that is asked for and cannot be had is not replaced silently.
+    #[cfg(feature = "std")]
+    #[inline]
+    pub fn cached() -> Result<Self, LevelError> {
+        static LEVEL: OnceLock<Result<Level, LevelError>> = OnceLock::new();
+        LEVEL.get_or_init(Self::from_env).clone()
     }
 
     /// Runs `kernel` in plain Rust, as [`Level::SCALAR`] does, and compiles it for nothing else: for work whose speed does not
@@ -216,7 +252,11 @@ impl fmt::Display for LevelError {
             }
             Self::Unavailable(isa) => {
                 let here = Level::available().map(|l| l.0.name()).collect();
-                write!(f, "this CPU lacks level '{isa}'; it has: {}", names(here))
+                if isa.compiled() {
+                    write!(f, "this CPU lacks level '{isa}'; it has: {}", names(here))
+                } else {
+                    write!(f, "this build leaves out level '{isa}'; it has: {}", names(here))
+                }
             }
         }
     }

@@ -32,7 +32,8 @@
 //!
 //! # Map
 //!
-//! - [`Level`]: an instruction set that this CPU has. [`Level::best`], [`Level::from_env`] (`SIMD_LEVEL`), [`Level::available`].
+//! - [`Level`]: an instruction set that this CPU has. [`Level::best`], [`Level::from_env`] (`SIMD_LEVEL`), [`Level::cached`],
+//!   [`Level::available`].
 //! - [`kernel!`], [`dispatch!`]: run code at a level; both are sugar for [`Kernel`] and [`Level::run`].
 //! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Mask`]: what they can do.
 //! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
@@ -43,6 +44,8 @@
 //! - `std` (default): detection of the CPU's levels, and [`Level::from_env`]. Without it the crate is `no_std`, and the levels are
 //!   those that the whole program is compiled for, as with `-C target-feature=+avx2`: `core` cannot detect.
 //! - `alloc` (part of `std`): [`AlignedVec`], levels by name, [`LevelError`].
+//! - `sse4_2`, `avx2`, `avx512` (default): the x86 levels above the baseline. Each is one more copy of every kernel in the
+//!   binary. A level that is left out is unavailable, unless the whole program is compiled for it.
 //! - `bytemuck`, `glam`, `wide`, `pulp`: conversions, see [`interop`].
 //!
 //! # Inlining

@@ -12,6 +12,10 @@
     not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
     allow(unused, reason = "what backends of registers share; there is only emulation here")
 )]
+#![cfg_attr(
+    not(all(feature = "sse4_2", feature = "avx2", feature = "avx512")),
+    allow(unused, reason = "the levels that are left out; others use parts of them")
+)]
 
 pub(crate) mod scalar;
 pub(crate) mod serial;
@@ -88,7 +92,7 @@ fn out_of_bounds(len: u32) -> ! {
     panic!("gather: an index is out of bounds of a slice of {len}");
 }
 
-/// Runs the kernel with the types of `isa`.
+/// Runs the kernel with the types of `isa`. The conditions are those of `Isa::compiled`.
 ///
 /// `isa` comes out of a [`Level`](crate::Level): this CPU has it.
 #[inline]
@@ -107,11 +111,17 @@ pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
         Isa::Serial => serial::run(kernel),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Isa::Sse2 => with_features!("sse,sse2", sse::Sse2),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        #[cfg(all(
+            any(target_arch = "x86", target_arch = "x86_64"),
+            any(feature = "sse4_2", target_feature = "sse4.2")
+        ))]
         Isa::Sse42 => with_features!("sse3,ssse3,sse4.1,sse4.2,popcnt", sse::Sse42),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), any(feature = "avx2", target_feature = "avx2")))]
         Isa::Avx2 => with_features!("avx2,fma,bmi1,bmi2,lzcnt,popcnt,f16c", avx2::Avx2),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        #[cfg(all(
+            any(target_arch = "x86", target_arch = "x86_64"),
+            any(feature = "avx512", target_feature = "avx512f")
+        ))]
         Isa::Avx512 => with_features!(
             "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt,f16c",
             avx512::Avx512
