@@ -1,8 +1,13 @@
 //! Levels: which instruction set to use, found, listed, parsed, forced; and the way into it.
 
 use crate::{Simd, backend};
+#[cfg(feature = "alloc")]
+use alloc::{borrow::ToOwned, string::String, vec::Vec};
 use std::fmt;
+#[cfg(feature = "alloc")]
 use std::str::FromStr;
+#[cfg(feature = "std")]
+use std::sync::OnceLock;
 
 /// An instruction set that this crate knows, whether or not this CPU has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -53,10 +58,29 @@ impl Isa {
         }
     }
 
+    /// Whether this build has code for it: a cargo feature, or what the whole program is compiled for.
+    #[allow(clippy::match_like_matches_macro, reason = "constants")]
+    const fn compiled(self) -> bool {
+        match self {
+            Self::Sse42 => cfg!(any(feature = "sse4_2", target_feature = "sse4.2")),
+            Self::Avx2 => cfg!(any(feature = "avx2", target_feature = "avx2")),
+            Self::Avx512 => cfg!(any(feature = "avx512", target_feature = "avx512f")),
+            _ => true,
+        }
+    }
+
+    #[cfg_attr(not(feature = "std"), allow(clippy::nonminimal_bool, reason = "constants, without detection"))]
     fn detected(self) -> bool {
         #[allow(unused_macros, reason = "there are architectures with emulation only")]
         macro_rules! cpu_has {
-            ($detect:ident: $($feature:tt)*) => { $(std::arch::$detect!($feature))&&* };
+            ($detect:ident: $($feature:tt)*) => { $(cpu_has!(@ $detect $feature))&&* };
+            (@ $detect:ident $feature:tt) => {{
+                #[cfg(feature = "std")]
+                let has = std::arch::$detect!($feature);
+                #[cfg(not(feature = "std"))]
+                let has = cfg!(target_feature = $feature);
+                has
+            }};
         }
         match self {
             Self::Scalar => true,
@@ -98,6 +122,7 @@ impl fmt::Display for Isa {
 /// let level = Level::best();
 /// println!("{level}: {} lanes", level.isa().lanes());
 /// assert!(Level::new(Isa::Scalar).is_some());
+/// # #[cfg(feature = "alloc")]
 /// assert!("sse5".parse::<Level>().is_err());
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -105,6 +130,7 @@ pub struct Level(Isa);
 
 impl Level {
     /// The environment variable that forces a level: see [`Level::from_env`].
+    #[cfg(feature = "std")]
     pub const ENV: &'static str = "SIMD_LEVEL";
     /// Plain Rust: every machine has it.
     pub const SCALAR: Self = Self(Isa::Scalar);
@@ -114,10 +140,12 @@ impl Level {
         Self(isa)
     }
 
-    /// This instruction set, if the CPU has it.
+    /// This instruction set, if the CPU has it and this build does not leave it out.
+    ///
+    /// Without feature `std`: if all CPUs that this was compiled for have it.
     #[must_use]
     pub fn new(isa: Isa) -> Option<Self> {
-        isa.detected().then_some(Self(isa))
+        (isa.compiled() && isa.detected()).then_some(Self(isa))
     }
 
     /// All that this CPU has, slowest first.
@@ -135,11 +163,33 @@ impl Level {
     ///
     /// # Errors
     /// [`LevelError`] when the name is unknown or this CPU lacks that level.
+    #[cfg(feature = "std")]
     pub fn from_env() -> Result<Self, LevelError> {
         match std::env::var(Self::ENV) {
             Ok(name) if !name.is_empty() && name != "auto" => name.parse(),
             _ => Ok(Self::best()),
         }
+    }
+
+    /// [`Level::from_env`], asked once per process: further calls cost a few instructions, and later changes of the environment
+    /// change nothing.
+    ///
+    /// ```
+    /// // What `SIMD_LEVEL` says; if that cannot be had, say so and take the best.
+    /// let level = simd::Level::cached().unwrap_or_else(|error| {
+    ///     eprintln!("{error}");
+    ///     simd::Level::best()
+    /// });
+    /// # assert_eq!(simd::Level::cached(), Ok(level));
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`Level::from_env`], the same at each call: a level that is asked for and cannot be had is not replaced silently.
+    #[cfg(feature = "std")]
+    #[inline]
+    pub fn cached() -> Result<Self, LevelError> {
+        static LEVEL: OnceLock<Result<Level, LevelError>> = OnceLock::new();
+        LEVEL.get_or_init(Self::from_env).clone()
     }
 
     /// Runs `kernel` in plain Rust, as [`Level::SCALAR`] does, and compiles it for nothing else: for work whose speed does not
@@ -170,6 +220,7 @@ impl fmt::Display for Level {
     }
 }
 
+#[cfg(feature = "alloc")]
 impl FromStr for Level {
     type Err = LevelError;
 
@@ -181,6 +232,7 @@ impl FromStr for Level {
 }
 
 /// Why a level cannot be had.
+#[cfg(feature = "alloc")]
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LevelError {
@@ -190,6 +242,7 @@ pub enum LevelError {
     Unavailable(Isa),
 }
 
+#[cfg(feature = "alloc")]
 impl fmt::Display for LevelError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let names = |levels: Vec<&str>| levels.join(", ");
@@ -199,12 +252,17 @@ impl fmt::Display for LevelError {
             }
             Self::Unavailable(isa) => {
                 let here = Level::available().map(|l| l.0.name()).collect();
-                write!(f, "this CPU lacks level '{isa}'; it has: {}", names(here))
+                if isa.compiled() {
+                    write!(f, "this CPU lacks level '{isa}'; it has: {}", names(here))
+                } else {
+                    write!(f, "this build leaves out level '{isa}'; it has: {}", names(here))
+                }
             }
         }
     }
 }
 
+#[cfg(feature = "alloc")]
 impl std::error::Error for LevelError {}
 
 /// Code written once, to be run at any [`Level`].

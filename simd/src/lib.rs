@@ -32,11 +32,25 @@
 //!
 //! # Map
 //!
-//! - [`Level`]: an instruction set that this CPU has. [`Level::best`], [`Level::from_env`] (`SIMD_LEVEL`), [`Level::available`].
+//! - [`Level`]: an instruction set that this CPU has. [`Level::best`], [`Level::from_env`] (`SIMD_LEVEL`), [`Level::cached`],
+//!   [`Level::available`].
 //! - [`kernel!`], [`dispatch!`]: run code at a level; both are sugar for [`Kernel`] and [`Level::run`].
 //! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Mask`]: what they can do;
 //!   [`operations`]: all of it in one table.
 //! - [`Block`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
+//! - [`native`]: the types of the compilation target, without dispatch.
+//! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Mask`]: what they can do.
+//! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
+//! - [`interop`]: conversions for bytemuck, glam, wide and pulp, each a feature.
+//!
+//! # Features
+//!
+//! - `std` (default): detection of the CPU's levels, and [`Level::from_env`]. Without it the crate is `no_std`, and the levels are
+//!   those that the whole program is compiled for, as with `-C target-feature=+avx2`: `core` cannot detect.
+//! - `alloc` (part of `std`): [`AlignedVec`], levels by name, [`LevelError`].
+//! - `sse4_2`, `avx2`, `avx512` (default): the x86 levels above the baseline. Each is one more copy of every kernel in the
+//!   binary. A level that is left out is unavailable, unless the whole program is compiled for it.
+//! - `bytemuck`, `glam`, `wide`, `pulp`: conversions, see [`interop`].
 //!
 //! # Inlining
 //!
@@ -46,7 +60,8 @@
 //!
 //! # The types cannot be named
 //!
-//! A type that can be named would be a licence to run its instructions anywhere, so the backends are out of reach:
+//! A type that can be named would be a licence to run its instructions anywhere, so the backends are out of reach (only what the
+//! whole program is compiled for anyway has names, in [`native`]):
 //!
 //! ```compile_fail
 //! let x = simd::backend::avx512::Float16::splat(1.0); // private module
@@ -58,17 +73,32 @@
 //! let level = simd::Level(simd::Isa::Avx512); // private field
 //! ```
 
+#![cfg_attr(not(any(feature = "std", test)), no_std)]
+
+#[cfg(feature = "alloc")]
+extern crate alloc;
+// What the modules take from `std` is in `core` too, except where they ask for the feature.
+#[cfg(not(feature = "std"))]
+extern crate core as std;
+
+#[cfg(feature = "alloc")]
+mod aligned;
 mod backend;
 mod block;
+pub mod interop;
 mod level;
 pub mod math;
+pub mod native;
 pub mod operations;
 mod pair;
 mod prefetch;
-mod soft;
 mod vector;
 
+#[cfg(feature = "alloc")]
+pub use aligned::AlignedVec;
 pub use block::Block;
-pub use level::{Isa, Kernel, Level, LevelError};
+#[cfg(feature = "alloc")]
+pub use level::LevelError;
+pub use level::{Isa, Kernel, Level};
 pub use prefetch::prefetch;
 pub use vector::{Float, Halves, Int, Integer, Lane, Mask, SetLanes, Simd, Uint, Vector};

@@ -5,7 +5,8 @@
 //!
 //! Operations need no token, so a type that can be named is a licence to run its instructions. The backends' types are in
 //! private modules behind sealed traits, and the only door is [`run`], called by [`Level::run`](crate::Level::run): a
-//! [`Level`](crate::Level) is proof that detection found the instruction set. So whatever runs in an operation of a backend
+//! [`Level`](crate::Level) is proof that detection found the instruction set. Beside it, [`native`](crate::native) names the
+//! types whose instructions the whole program is compiled for. So whatever runs in an operation of a backend
 //! type runs on a CPU that has its instructions. That is the argument of [`intrinsics!`]; memory is touched only through
 //! references whose length was checked on the line above.
 
@@ -13,18 +14,23 @@
     not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
     allow(unused, reason = "what backends of registers share; there is only emulation here")
 )]
+#![cfg_attr(
+    not(all(feature = "sse4_2", feature = "avx2", feature = "avx512")),
+    allow(unused, reason = "the levels that are left out; others use parts of them")
+)]
 
 pub(crate) mod scalar;
 pub(crate) mod serial;
+pub(crate) mod soft;
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-mod avx2;
+pub(crate) mod avx2;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-mod avx512;
+pub(crate) mod avx512;
 #[cfg(target_arch = "aarch64")]
-mod neon;
+pub(crate) mod neon;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-mod sse;
+pub(crate) mod sse;
 mod tables;
 
 use crate::{Isa, Kernel, Mask, Vector};
@@ -138,7 +144,7 @@ fn out_of_bounds(len: u32) -> ! {
     panic!("gather or scatter: an index is out of bounds of a slice of {len}");
 }
 
-/// Runs the kernel with the types of `isa`.
+/// Runs the kernel with the types of `isa`. The conditions are those of `Isa::compiled`.
 ///
 /// `isa` comes out of a [`Level`](crate::Level): this CPU has it.
 #[inline]
@@ -157,11 +163,17 @@ pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
         Isa::Serial => serial::run(kernel),
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Isa::Sse2 => with_features!("sse,sse2", sse::Sse2),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        #[cfg(all(
+            any(target_arch = "x86", target_arch = "x86_64"),
+            any(feature = "sse4_2", target_feature = "sse4.2")
+        ))]
         Isa::Sse42 => with_features!("sse3,ssse3,sse4.1,sse4.2,popcnt", sse::Sse42),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), any(feature = "avx2", target_feature = "avx2")))]
         Isa::Avx2 => with_features!("avx2,fma,bmi1,bmi2,lzcnt,popcnt,f16c", avx2::Avx2),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        #[cfg(all(
+            any(target_arch = "x86", target_arch = "x86_64"),
+            any(feature = "avx512", target_feature = "avx512f")
+        ))]
         Isa::Avx512 => with_features!(
             "avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt,f16c",
             avx512::Avx512

@@ -2,6 +2,7 @@
 //!
 //! Emulated vectors are pairs of pairs of these.
 
+use super::soft;
 use crate::pair::Pair;
 use crate::vector::sealed::{List, Sealed};
 use crate::{Block, Float, Int, Integer, Isa, Kernel, Lane, Level, Mask, Simd, Uint, Vector};
@@ -219,23 +220,23 @@ impl Float for f32 {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        self.sqrt()
+        soft::sqrt(self)
     }
     #[inline(always)]
     fn floor(self) -> Self {
-        self.floor()
+        soft::floor(self)
     }
     #[inline(always)]
     fn ceil(self) -> Self {
-        self.ceil()
+        soft::ceil(self)
     }
     #[inline(always)]
     fn trunc(self) -> Self {
-        self.trunc()
+        soft::trunc(self)
     }
     #[inline(always)]
     fn round(self) -> Self {
-        self.round_ties_even()
+        soft::round_ties_even(self)
     }
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
@@ -251,7 +252,7 @@ impl Float for f32 {
     }
     #[inline(always)]
     fn mul_add_exact(self, b: Self, c: Self) -> Self {
-        crate::soft::mul_add(self, b, c)
+        crate::backend::soft::mul_add(self, b, c)
     }
     #[inline(always)]
     fn to_int(self) -> Wrapping<i32> {

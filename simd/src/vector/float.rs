@@ -57,7 +57,7 @@ pub trait Float:
     #[inline(always)]
     fn mul_add_exact(self, b: Self, c: Self) -> Self {
         let (x, b, c) = (self.to_block(), b.to_block(), c.to_block());
-        Self::from_fn(|i| crate::soft::mul_add(x.0[i], b.0[i], c.0[i]))
+        Self::from_fn(|i| crate::backend::soft::mul_add(x.0[i], b.0[i], c.0[i]))
     }
 
     /// An estimate of `1 / self`, *relaxed*: its bits differ between levels and between makers of CPUs. For `self`

@@ -142,7 +142,7 @@ impl<I: Sse> Float for Float4<I> {
             return self.mul_add(b, c);
         }
         let (a, b, c) = (self.to_block(), b.to_block(), c.to_block());
-        Self::from_fn(|i| crate::soft::mul_add(a.0[i], b.0[i], c.0[i]))
+        Self::from_fn(|i| crate::backend::soft::mul_add(a.0[i], b.0[i], c.0[i]))
     }
     #[inline(always)]
     fn rcp_approx(self) -> Self {

@@ -78,7 +78,7 @@ macro_rules! vector {
             #[inline(always)]
             fn stream(dst: &mut [Block<$Lane>], mut f: impl FnMut(usize) -> Self) {
                 let _fence = StreamFence;
-                for (i, chunk) in crate::block::lanes_mut(dst).as_chunks_mut::<4>().0.iter_mut().enumerate() {
+                for (i, chunk) in Block::flatten_mut(dst).as_chunks_mut::<4>().0.iter_mut().enumerate() {
                     let x = f(i).ps();
                     // SAFETY: four elements are there to write, at a multiple of 16 bytes into blocks aligned to 64; the fence
                     // comes before anybody else can look.
