@@ -101,4 +101,4 @@ pub use block::Block;
 pub use level::LevelError;
 pub use level::{Isa, Kernel, Level};
 pub use prefetch::prefetch;
-pub use vector::{Float, Halves, Int, Integer, Lane, Mask, SetLanes, Simd, Uint, Vector};
+pub use vector::{Double, Float, Halves, Int, Integer, Lane, Mask, SetLanes, Simd, Uint, Vector};

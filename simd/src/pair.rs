@@ -3,7 +3,7 @@
 use crate::backend::{check_bounds, list_lanes};
 use crate::vector::check_masked;
 use crate::vector::sealed::{List, Sealed};
-use crate::{Block, Float, Halves, Int, Integer, Mask, Uint, Vector};
+use crate::{Block, Double, Float, Halves, Int, Integer, Mask, Uint, Vector};
 use std::fmt;
 use std::ops::*;
 
@@ -342,6 +342,18 @@ impl<V: Float> Float for Pair<V> {
     #[inline(always)]
     fn reduce_add(self) -> f32 {
         (self.0 + self.1).reduce_add()
+    }
+}
+
+impl<V: Double> Double for Pair<V> {
+    lanewise! { abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round(); }
+    #[inline(always)]
+    fn reduce_add(self) -> f64 {
+        (self.0 + self.1).reduce_add()
+    }
+    #[inline(always)]
+    fn reduce_mul(self) -> f64 {
+        (self.0 * self.1).reduce_mul()
     }
 }
 

@@ -5,7 +5,7 @@
 use super::soft;
 use crate::pair::Pair;
 use crate::vector::sealed::{List, Sealed};
-use crate::{Block, Float, Int, Integer, Isa, Kernel, Lane, Level, Mask, Simd, Uint, Vector};
+use crate::{Block, Double, Float, Int, Integer, Isa, Kernel, Lane, Level, Mask, Simd, Uint, Vector};
 use std::fmt;
 use std::num::Wrapping;
 
@@ -17,7 +17,7 @@ pub struct Scalar;
 
 /// The vector types of an emulation, from its one-lane types.
 macro_rules! emulation {
-    ($Level:ident, $f:ty, $i:ty, $u:ty) => {
+    ($Level:ident, $f:ty, $i:ty, $u:ty, $d:ty) => {
         impl Sealed for $Level {}
         impl Simd for $Level {
             const LEVEL: Level = Level::of_backend(Isa::$Level);
@@ -33,6 +33,9 @@ macro_rules! emulation {
             type Int16 = Pair<Self::Int8>;
             type Uint16 = Pair<Self::Uint8>;
             type Bool16 = Pair<Self::Bool8>;
+            type Double2 = Pair<$d>;
+            type Double4 = Pair<Self::Double2>;
+            type Double8 = Pair<Self::Double4>;
             type Float = Self::Float4;
         }
 
@@ -44,7 +47,7 @@ macro_rules! emulation {
     };
 }
 pub(super) use emulation;
-emulation!(Scalar, f32, Wrapping<i32>, Wrapping<u32>);
+emulation!(Scalar, f32, Wrapping<i32>, Wrapping<u32>, f64);
 
 // ---- Masks ----
 
@@ -198,9 +201,11 @@ macro_rules! lane {
 }
 
 impl Sealed for f32 {}
+impl Sealed for f64 {}
 impl Sealed for i32 {}
 impl Sealed for u32 {}
 impl<T> Sealed for Wrapping<T> {}
+lane!(f64, f64, f64::NEG_INFINITY, f64::INFINITY, std::convert::identity, std::convert::identity);
 lane!(f32, f32, f32::NEG_INFINITY, f32::INFINITY, std::convert::identity, std::convert::identity);
 lane!(i32, Wrapping<i32>, i32::MIN, i32::MAX, Wrapping, |w: Wrapping<i32>| w.0);
 lane!(u32, Wrapping<u32>, u32::MIN, u32::MAX, Wrapping, |w: Wrapping<u32>| w.0);
@@ -220,23 +225,23 @@ impl Float for f32 {
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        soft::sqrt(self)
+        soft::single::sqrt(self)
     }
     #[inline(always)]
     fn floor(self) -> Self {
-        soft::floor(self)
+        soft::single::floor(self)
     }
     #[inline(always)]
     fn ceil(self) -> Self {
-        soft::ceil(self)
+        soft::single::ceil(self)
     }
     #[inline(always)]
     fn trunc(self) -> Self {
-        soft::trunc(self)
+        soft::single::trunc(self)
     }
     #[inline(always)]
     fn round(self) -> Self {
-        soft::round_ties_even(self)
+        soft::single::round_ties_even(self)
     }
     #[inline(always)]
     fn mul_add(self, b: Self, c: Self) -> Self {
@@ -280,6 +285,45 @@ impl Float for f32 {
     }
     #[inline(always)]
     fn reduce_add(self) -> f32 {
+        self
+    }
+}
+
+impl Double for f64 {
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.abs()
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        self.copysign(sign)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        soft::double::sqrt(self)
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        soft::double::floor(self)
+    }
+    #[inline(always)]
+    fn ceil(self) -> Self {
+        soft::double::ceil(self)
+    }
+    #[inline(always)]
+    fn trunc(self) -> Self {
+        soft::double::trunc(self)
+    }
+    #[inline(always)]
+    fn round(self) -> Self {
+        soft::double::round_ties_even(self)
+    }
+    #[inline(always)]
+    fn reduce_add(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn reduce_mul(self) -> f64 {
         self
     }
 }

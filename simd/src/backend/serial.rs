@@ -3,7 +3,7 @@
 use super::{list_lanes, scalar};
 use crate::pair::Pair;
 use crate::vector::sealed::{List, Sealed};
-use crate::{Block, Float, Int, Integer, Isa, Kernel, Level, Simd, Uint, Vector};
+use crate::{Block, Double, Float, Int, Integer, Isa, Kernel, Level, Simd, Uint, Vector};
 use std::fmt;
 use std::num::Wrapping;
 use std::ops::*;
@@ -13,7 +13,7 @@ use std::ops::*;
 /// Emulation in scalar instructions.
 #[derive(Debug, Clone, Copy)]
 pub struct Serial;
-scalar::emulation!(Serial, Fenced<f32>, Fenced<Wrapping<i32>>, Fenced<Wrapping<u32>>);
+scalar::emulation!(Serial, Fenced<f32>, Fenced<Wrapping<i32>>, Fenced<Wrapping<u32>>, Fenced<f64>);
 
 /// Whether [`Fence::fence`] does anything on this architecture.
 pub(crate) const FENCED: bool =
@@ -46,6 +46,7 @@ macro_rules! fence {
 mod fences {
     use super::*;
     fence!(f32, vreg, "/* {0:s} */", x: x);
+    fence!(f64, vreg, "/* {0:d} */", x: x);
     fence!(Wrapping<i32>, reg, "/* {0:w} */", x: x.0);
     fence!(Wrapping<u32>, reg, "/* {0:w} */", x: x.0);
 }
@@ -53,6 +54,7 @@ mod fences {
 mod fences {
     use super::*;
     fence!(f32, xmm_reg, "/* {0} */", x: x);
+    fence!(f64, xmm_reg, "/* {0} */", x: x);
     fence!(Wrapping<i32>, reg, "/* {0:e} */", x: x.0);
     fence!(Wrapping<u32>, reg, "/* {0:e} */", x: x.0);
 }
@@ -251,6 +253,20 @@ impl<V: Fence + Float<Int = Wrapping<i32>>> Float for Fenced<V> {
     #[inline(always)]
     fn reduce_add(self) -> f32 {
         self.0.reduce_add()
+    }
+}
+
+impl<V: Fence + Double> Double for Fenced<V> {
+    fenced! { V as Double:
+        abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round();
+    }
+    #[inline(always)]
+    fn reduce_add(self) -> f64 {
+        self.0.reduce_add()
+    }
+    #[inline(always)]
+    fn reduce_mul(self) -> f64 {
+        self.0.reduce_mul()
     }
 }
 

@@ -1,104 +1,126 @@
-//! What `std` has for `f32` and `core` has not, with the same bits; and the fused multiply-add of levels that lack it.
+//! What `std` has for floats and `core` has not, with the same bits; and the fused multiply-add of levels that lack it.
 
+/// Rounding and square root in integer arithmetic; `$wide` has twice the bits, `$bias` is of the exponent.
+#[cfg(any(test, not(feature = "std")))]
+macro_rules! portable {
+    ($name:ident: $f:ty, $bits:ty, $wide:ty, $int:ty, fraction $fraction:literal, bias $bias:literal) => {
+        pub mod $name {
+            /// Bits of the fraction.
+            const FRACTION: i32 = $fraction;
+            /// The bits of the fraction.
+            const MASK: $bits = (1 << FRACTION) - 1;
+
+            /// Integer part: clears the bits of the fraction that are worth less than one.
+            #[inline(always)]
+            pub fn trunc(x: $f) -> $f {
+                let exponent = ((x.to_bits() >> FRACTION) as i32 & (2 * $bias + 1)) - $bias;
+                match exponent {
+                    ..0 => <$f>::copysign(0.0, x),
+                    0..FRACTION => <$f>::from_bits(x.to_bits() & <$bits>::MAX << (FRACTION - exponent)),
+                    _ => x,
+                }
+            }
+
+            #[inline(always)]
+            pub fn floor(x: $f) -> $f {
+                let whole = trunc(x);
+                if whole > x { whole - 1.0 } else { whole }
+            }
+
+            #[inline(always)]
+            pub fn ceil(x: $f) -> $f {
+                let whole = trunc(x);
+                if whole < x { whole + 1.0 } else { whole }
+            }
+
+            #[inline(always)]
+            pub fn round_ties_even(x: $f) -> $f {
+                let whole = trunc(x);
+                let rest = (x - whole).abs(); // exact
+                let odd = whole as $int & 1 != 0; // what saturates has no rest
+                if rest > 0.5 || (rest == 0.5 && odd) { whole + <$f>::copysign(1.0, x) } else { whole }
+            }
+
+            /// Correctly rounded, by the square root of an integer.
+            #[inline(always)]
+            #[allow(dead_code, reason = "there are processors with the instruction")]
+            pub fn sqrt(x: $f) -> $f {
+                if x.is_nan() || x <= 0.0 || x == <$f>::INFINITY {
+                    return if x < 0.0 { <$f>::NAN } else { x };
+                }
+                // x = fraction * 2^(exponent - bias - FRACTION), fraction of exactly FRACTION + 1 bits.
+                let (mut fraction, mut exponent) = (x.to_bits() & MASK, (x.to_bits() >> FRACTION) as i32);
+                if exponent == 0 {
+                    let shift = fraction.leading_zeros() as i32 - (<$bits>::BITS as i32 - 1 - FRACTION);
+                    fraction <<= shift;
+                    exponent = 1 - shift;
+                } else {
+                    fraction |= 1 << FRACTION;
+                }
+                // Shifted so that the exponent is even and the root has FRACTION + 2 bits: the last one rounds. There are no ties: an
+                // odd root would have an odd square.
+                let unit = exponent - $bias - FRACTION;
+                let shift = FRACTION + 2 + ((unit ^ FRACTION) & 1);
+                let root = (<$wide>::from(fraction) << shift).isqrt() as $bits;
+                let root = (root + 1) >> 1;
+                let exponent = (unit - shift) / 2 + 1 + $bias + FRACTION;
+                // The root's leading bit adds one to the exponent, and one more if rounding has carried.
+                <$f>::from_bits((((exponent - 1) as $bits) << FRACTION) + root)
+            }
+        }
+    };
+}
 #[cfg(any(test, not(feature = "std")))]
 mod portable {
-    /// Bits of the fraction.
-    const FRACTION: i32 = 23;
-
-    /// Integer part: clears the bits of the fraction that are worth less than one.
-    #[inline(always)]
-    pub fn trunc(x: f32) -> f32 {
-        let exponent = (x.to_bits() >> FRACTION & 0xff) as i32 - 127;
-        match exponent {
-            ..0 => 0.0_f32.copysign(x),
-            0..FRACTION => f32::from_bits(x.to_bits() & u32::MAX << (FRACTION - exponent)),
-            _ => x,
-        }
-    }
-
-    #[inline(always)]
-    pub fn floor(x: f32) -> f32 {
-        let whole = trunc(x);
-        if whole > x { whole - 1.0 } else { whole }
-    }
-
-    #[inline(always)]
-    pub fn ceil(x: f32) -> f32 {
-        let whole = trunc(x);
-        if whole < x { whole + 1.0 } else { whole }
-    }
-
-    #[inline(always)]
-    pub fn round_ties_even(x: f32) -> f32 {
-        let whole = trunc(x);
-        let rest = (x - whole).abs(); // exact
-        let odd = whole as i32 & 1 != 0; // what saturates has no rest
-        if rest > 0.5 || (rest == 0.5 && odd) { whole + 1.0_f32.copysign(x) } else { whole }
-    }
-
-    /// Correctly rounded, by the square root of an integer.
-    #[inline(always)]
-    #[cfg_attr(any(target_feature = "sse", target_feature = "neon"), allow(dead_code, reason = "has the instruction"))]
-    pub fn sqrt(x: f32) -> f32 {
-        if x.is_nan() || x <= 0.0 || x == f32::INFINITY {
-            return if x < 0.0 { f32::NAN } else { x };
-        }
-        // x = fraction * 2^(exponent - 150), fraction of exactly 24 bits.
-        let (mut fraction, mut exponent) = (x.to_bits() & 0x7f_ffff, (x.to_bits() >> FRACTION) as i32);
-        if exponent == 0 {
-            let shift = fraction.leading_zeros() - 8;
-            fraction <<= shift;
-            exponent = 1 - shift as i32;
-        } else {
-            fraction |= 1 << FRACTION;
-        }
-        // Shifted so that the exponent is even and the root has 25 bits: the last one rounds. There are no ties: an odd root
-        // would have an odd square.
-        let shift = 25 + ((exponent + 1) & 1);
-        let root = (u64::from(fraction) << shift).isqrt() as u32;
-        let root = (root + 1) >> 1;
-        let exponent = (exponent - 150 - shift) / 2 + 151;
-        // The root's leading bit adds one to the exponent, and one more if rounding has carried.
-        f32::from_bits((((exponent - 1) as u32) << FRACTION) + root)
-    }
+    portable!(single: f32, u32, u64, i32, fraction 23, bias 127);
+    portable!(double: f64, u64, u128, i64, fraction 52, bias 1023);
 }
 
 macro_rules! std_or_portable {
-    ($($name:ident),*) => {$(
+    ($module:ident $f:ty: $($name:ident)*) => {$(
         #[inline(always)]
-        pub(super) fn $name(x: f32) -> f32 {
+        pub(crate) fn $name(x: $f) -> $f {
             #[cfg(feature = "std")]
-            return f32::$name(x);
+            return <$f>::$name(x);
             #[cfg(not(feature = "std"))]
-            return portable::$name(x);
+            return super::portable::$module::$name(x);
         }
     )*};
 }
-std_or_portable!(floor, ceil, trunc, round_ties_even);
 
-/// Square root, correctly rounded.
-#[inline(always)]
-pub(super) fn sqrt(x: f32) -> f32 {
-    #[cfg(feature = "std")]
-    return f32::sqrt(x);
-    #[cfg(all(not(feature = "std"), any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse"))]
-    {
-        #[cfg(target_arch = "x86")]
-        use core::arch::x86::*;
-        #[cfg(target_arch = "x86_64")]
-        use core::arch::x86_64::*;
-        // SAFETY: everything here is compiled for SSE.
-        return unsafe { _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x))) };
+/// Of `f32`.
+pub(crate) mod single {
+    std_or_portable!(single f32: floor ceil trunc round_ties_even);
+
+    /// Square root, correctly rounded.
+    #[inline(always)]
+    pub(crate) fn sqrt(x: f32) -> f32 {
+        #[cfg(feature = "std")]
+        return f32::sqrt(x);
+        #[cfg(all(not(feature = "std"), any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse"))]
+        {
+            #[cfg(target_arch = "x86")]
+            use core::arch::x86::*;
+            #[cfg(target_arch = "x86_64")]
+            use core::arch::x86_64::*;
+            // SAFETY: everything here is compiled for SSE.
+            return unsafe { _mm_cvtss_f32(_mm_sqrt_ss(_mm_set_ss(x))) };
+        }
+        #[cfg(all(not(feature = "std"), target_arch = "aarch64", target_feature = "neon"))]
+        {
+            use core::arch::aarch64::*;
+            // SAFETY: everything here is compiled for NEON.
+            return unsafe { vget_lane_f32::<0>(vsqrt_f32(vdup_n_f32(x))) };
+        }
+        #[allow(unreachable_code, reason = "for processors without the instruction")]
+        #[cfg(not(feature = "std"))]
+        return super::portable::single::sqrt(x);
     }
-    #[cfg(all(not(feature = "std"), target_arch = "aarch64", target_feature = "neon"))]
-    {
-        use core::arch::aarch64::*;
-        // SAFETY: everything here is compiled for NEON.
-        return unsafe { vget_lane_f32::<0>(vsqrt_f32(vdup_n_f32(x))) };
-    }
-    #[allow(unreachable_code, reason = "for processors without the instruction")]
-    #[cfg(not(feature = "std"))]
-    return portable::sqrt(x);
+}
+
+/// Of `f64`.
+pub(crate) mod double {
+    std_or_portable!(double f64: floor ceil trunc round_ties_even sqrt);
 }
 
 /// `a * b + c` with one rounding.
@@ -124,24 +146,30 @@ pub(crate) fn mul_add(a: f32, b: f32, c: f32) -> f32 {
 mod tests {
     use super::{mul_add, portable};
 
-    /// Every 251st number, of all signs and exponents. Which NaN a NaN is does not matter.
-    #[test]
-    fn same_bits_as_std() {
-        let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
-        for x in (0..=u32::MAX).step_by(251).map(f32::from_bits) {
-            assert!(same(portable::floor(x), x.floor()), "floor {x:e}");
-            assert!(same(portable::ceil(x), x.ceil()), "ceil {x:e}");
-            assert!(same(portable::trunc(x), x.trunc()), "trunc {x:e}");
-            assert!(same(portable::round_ties_even(x), x.round_ties_even()), "round {x:e}");
-            assert!(same(portable::sqrt(x), x.sqrt()), "sqrt {x:e}");
-        }
-        for whole in -1000..1000 {
-            for x in [whole as f32 + 0.5, whole as f32] {
-                assert!(same(portable::round_ties_even(x), x.round_ties_even()), "round {x:e}");
-                assert!(same(portable::sqrt(x * x), x.abs()), "sqrt of the square of {x:e}");
+    macro_rules! same_bits_as_std {
+        ($name:ident: $f:ty, $bits:ty) => {
+            /// Spread over all signs and exponents. Which NaN a NaN is does not matter.
+            #[test]
+            fn $name() {
+                let same = |a: $f, b: $f| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+                let check = |x: $f| {
+                    assert!(same(portable::$name::floor(x), x.floor()), "floor {x:e}");
+                    assert!(same(portable::$name::ceil(x), x.ceil()), "ceil {x:e}");
+                    assert!(same(portable::$name::trunc(x), x.trunc()), "trunc {x:e}");
+                    assert!(same(portable::$name::round_ties_even(x), x.round_ties_even()), "round {x:e}");
+                    assert!(same(portable::$name::sqrt(x), x.sqrt()), "sqrt {x:e}");
+                };
+                let step = <$bits>::MAX / 10_000_019;
+                (0..10_000_019).for_each(|i| check(<$f>::from_bits(step * i)));
+                for whole in -1000..1000_i16 {
+                    let x = <$f>::from(whole);
+                    [x, x + 0.5, x * x, x * x * x / 7.0].into_iter().for_each(check);
+                }
             }
-        }
+        };
     }
+    same_bits_as_std!(single: f32, u32);
+    same_bits_as_std!(double: f64, u64);
 
     /// Against the standard library's.
     #[test]

@@ -9,11 +9,13 @@
 use crate::Level;
 use std::fmt::Debug;
 
+mod double;
 mod float;
 pub(crate) mod integer;
 mod lanes;
 mod mask;
 
+pub use double::Double;
 pub use float::Float;
 pub use integer::{Int, Integer, Uint};
 pub(crate) use lanes::check_masked;
@@ -78,14 +80,24 @@ pub trait Simd: Sealed + Copy + Debug + Send + Sync + 'static {
     #[doc(alias("bool16", "mask32x16", "vbool16"))]
     type Bool16: Mask;
 
+    /// Two `f64`.
+    #[doc(alias("double2", "f64x2", "vdouble2"))]
+    type Double2: Double;
+    /// Four `f64`.
+    #[doc(alias("double4", "f64x4", "vdouble4"))]
+    type Double4: Double + Halves<Half = Self::Double2>;
+    /// Eight `f64`.
+    #[doc(alias("double8", "f64x8", "vdouble8"))]
+    type Double8: Double + Halves<Half = Self::Double4>;
+
     /// `f32` in the width of this level's registers.
     type Float: Float;
 }
 
-/// The type of one lane: `f32`, `i32` or `u32`.
+/// The type of one lane: `f32`, `i32`, `u32` or `f64`.
 pub trait Lane: Sealed + Copy + Debug + Default + PartialEq + PartialOrd + Send + Sync + 'static {
-    /// Not smaller than any other value (infinity for `f32`).
+    /// Not smaller than any other value (infinity for floats).
     const LARGEST: Self;
-    /// Not larger than any other value (minus infinity for `f32`).
+    /// Not larger than any other value (minus infinity for floats).
     const SMALLEST: Self;
 }

@@ -2,6 +2,7 @@
 
 #[macro_use]
 mod harness;
+mod double;
 mod estimates;
 mod float;
 mod integer;

@@ -43,6 +43,9 @@ impl Simd for Avx2 {
     type Int16 = Pair<Int8>;
     type Uint16 = Pair<Uint8>;
     type Bool16 = Pair<Bool8>;
+    type Double2 = Pair<f64>;
+    type Double4 = Pair<Self::Double2>;
+    type Double8 = Pair<Self::Double4>;
     type Float = Float8;
 }
 

@@ -3,6 +3,7 @@
 use super::avx2::{self, Avx2};
 use super::sse::{self, StreamFence};
 use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
+use crate::pair::Pair;
 use crate::vector::check_masked;
 use crate::vector::sealed::{List, Sealed};
 use crate::{Block, Float, Halves, Int, Integer, Isa, Level, Mask, Simd, Uint, Vector};
@@ -38,6 +39,9 @@ impl Simd for Avx512 {
     type Int16 = Int16;
     type Uint16 = Uint16;
     type Bool16 = Bool16;
+    type Double2 = Pair<f64>;
+    type Double4 = Pair<Self::Double2>;
+    type Double8 = Pair<Self::Double4>;
     type Float = Float16;
 }
 

@@ -33,6 +33,9 @@ impl Simd for Neon {
     type Int16 = Pair<Self::Int8>;
     type Uint16 = Pair<Self::Uint8>;
     type Bool16 = Pair<Self::Bool8>;
+    type Double2 = Pair<f64>;
+    type Double4 = Pair<Self::Double2>;
+    type Double8 = Pair<Self::Double4>;
     type Float = Float4;
 }
 
