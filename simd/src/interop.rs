@@ -3,7 +3,7 @@
 //! - `bytemuck`: [`Block`](crate::Block) is plain data: `bytemuck::cast_slice` sees blocks as bytes, numbers or vectors.
 //! - `wide`, `pulp`: `From` and `Into` between a [`Block`](crate::Block) and the vectors that fill it, as `[f32x4; 4]`,
 //!   `[f32x8; 2]` or `f32x16`, also of `i32` and `u32`. The bits stay as they are.
-//! - `glam`: module [`glam`], vectors of points from slices of `Vec3` and `Vec4` and back.
+//! - `glam`: module `glam`, vectors of points from slices of `Vec3` and `Vec4` and back.
 //!
 //! Whole slices of `wide` and `pulp` vectors are plain data too: `bytemuck::cast_slice::<Block<f32>, wide::f32x8>(blocks)` copies
 //! nothing. The vector types of this crate cannot be named and so have no conversions: go through slices, arrays and blocks.
