@@ -35,6 +35,7 @@
 //! - [`Level`]: an instruction set that this CPU has. [`Level::best`], [`Level::from_env`] (`SIMD_LEVEL`), [`Level::cached`],
 //!   [`Level::available`].
 //! - [`kernel!`], [`dispatch!`]: run code at a level; both are sugar for [`Kernel`] and [`Level::run`].
+//! - [`native`]: the types of the compilation target, without dispatch.
 //! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Mask`]: what they can do.
 //! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
 //! - [`interop`]: conversions for bytemuck, glam, wide and pulp, each a feature.
@@ -56,7 +57,8 @@
 //!
 //! # The types cannot be named
 //!
-//! A type that can be named would be a licence to run its instructions anywhere, so the backends are out of reach:
+//! A type that can be named would be a licence to run its instructions anywhere, so the backends are out of reach (only what the
+//! whole program is compiled for anyway has names, in [`native`]):
 //!
 //! ```compile_fail
 //! let x = simd::backend::avx512::Float16::splat(1.0); // private module
@@ -83,6 +85,7 @@ mod block;
 pub mod interop;
 mod level;
 pub mod math;
+pub mod native;
 mod pair;
 mod prefetch;
 mod vector;

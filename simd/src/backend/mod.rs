@@ -4,7 +4,8 @@
 //!
 //! Operations need no token, so a type that can be named is a licence to run its instructions. The backends' types are in
 //! private modules behind sealed traits, and the only door is [`run`], called by [`Level::run`](crate::Level::run): a
-//! [`Level`](crate::Level) is proof that detection found the instruction set. So whatever runs in an operation of a backend
+//! [`Level`](crate::Level) is proof that detection found the instruction set. Beside it, [`native`](crate::native) names the
+//! types whose instructions the whole program is compiled for. So whatever runs in an operation of a backend
 //! type runs on a CPU that has its instructions. That is the argument of [`intrinsics!`]; memory is touched only through
 //! references whose length was checked on the line above.
 
@@ -22,13 +23,13 @@ pub(crate) mod serial;
 mod soft;
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-mod avx2;
+pub(crate) mod avx2;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-mod avx512;
+pub(crate) mod avx512;
 #[cfg(target_arch = "aarch64")]
-mod neon;
+pub(crate) mod neon;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-mod sse;
+pub(crate) mod sse;
 
 use crate::{Isa, Kernel, Mask, Vector};
 
