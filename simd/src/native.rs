@@ -40,6 +40,8 @@
 //! can be inlined anywhere. Without such flags it means SSE2 on x86-64: a program for everybody's machines is faster by
 //! [`kernel!`](crate::kernel), which uses what each has. The cargo features of the x86 levels change nothing here.
 
+#![allow(unused_imports, reason = "what is hidden by something better")]
+
 use crate::{Level, Simd};
 
 // Each module takes what the one before it has, unless there is something better: a name hides what comes by `*`. The conditions
@@ -58,7 +60,6 @@ mod baseline {
 }
 
 mod v2 {
-    #[allow(unused_imports, reason = "hidden by something better")]
     pub use super::baseline::*;
     #[cfg(all(
         any(target_arch = "x86", target_arch = "x86_64"),
@@ -72,7 +73,6 @@ mod v2 {
 }
 
 mod v3 {
-    #[allow(unused_imports, reason = "hidden by something better")]
     pub use super::v2::*;
     #[cfg(all(
         any(target_arch = "x86", target_arch = "x86_64"),
@@ -88,7 +88,6 @@ mod v3 {
 }
 
 mod v4 {
-    #[allow(unused_imports, reason = "hidden by something better")]
     pub use super::v3::*;
     #[cfg(all(
         any(target_arch = "x86", target_arch = "x86_64"),
