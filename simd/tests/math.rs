@@ -1,9 +1,8 @@
 //! How accurate the computed functions are, against `f64`, and their special values. One lane is enough: that every level
 //! gives its bits is tested with the operations.
 
-use simd::math::{exp2, log2, pow};
+use simd::math::{acos, asin, atan, atan2, cbrt, cos, exp, exp2, ln, log2, pow, sin, sin_cos, tan};
 use simd::{Level, Vector};
-use std::ops::RangeInclusive;
 
 const INF: f32 = f32::INFINITY;
 const NAN: f32 = f32::NAN;
@@ -17,7 +16,8 @@ fn ulps(got: f32, exact: f64) -> f64 {
     let limit = 2.0_f64.powi(128);
     let (got, exact) = (f64::from(got).clamp(-limit, limit), exact.clamp(-limit, limit));
     let exponent = (exact.abs().to_bits() >> 52) as i32 - 1023;
-    (got - exact).abs() / 2.0_f64.powi(exponent.clamp(-126, 127) - 23)
+    let unit = f64::from_bits(((exponent.clamp(-126, 127) - 23 + 1023) as u64) << 52);
+    (got - exact).abs() / unit
 }
 
 /// The worst of many results, and its arguments.
@@ -40,20 +40,70 @@ impl Worst {
     }
 }
 
-simd::kernel! {
-    fn exp2_of_all<S>(x: &mut [f32]) {
-        for x in x.chunks_exact_mut(S::Float16::LANES) {
-            exp2(S::Float16::load(x)).store(x);
+/// The worst result for the floats with these bit patterns.
+fn worst_of(patterns: impl Iterator<Item = u32>, function: fn(Level, &mut [f32]), exact: fn(f64) -> f64) -> Worst {
+    let level = Level::best();
+    let mut worst = Worst::default();
+    let mut x = patterns.map(f32::from_bits).peekable();
+    let mut got = [0.0; 1 << 12];
+    while x.peek().is_some() {
+        let arguments: Vec<f32> = x.by_ref().take(got.len()).collect();
+        got[..arguments.len()].copy_from_slice(&arguments);
+        function(level, &mut got);
+        for (&x, got) in arguments.iter().zip(got) {
+            worst.take(got, exact(f64::from(x)), [x, 0.0]);
         }
     }
+    worst
 }
 
-simd::kernel! {
-    fn log2_of_all<S>(x: &mut [f32]) {
-        for x in x.chunks_exact_mut(S::Float16::LANES) {
-            log2(S::Float16::load(x)).store(x);
-        }
-    }
+/// Tests of functions of one number: `name: exact function, bound in ulp, ranges where every float is tested`.
+macro_rules! unary {
+    ($($name:ident: $exact:expr, $bound:literal, $ranges:expr;)*) => {
+        $(mod $name {
+            use super::*;
+
+            simd::kernel! {
+                fn of_all<S>(x: &mut [f32]) {
+                    for x in x.chunks_exact_mut(S::Float16::LANES) {
+                        simd::math::$name(S::Float16::load(x)).store(x);
+                    }
+                }
+            }
+
+            #[test]
+            fn sample() {
+                worst_of((0..=u32::MAX).step_by(2503), of_all, $exact).check($bound);
+                let ranges: &[(f32, f32)] = &$ranges;
+                for (low, high) in ranges {
+                    worst_of(low.to_bits()..=high.to_bits(), of_all, $exact).check($bound);
+                }
+            }
+
+            /// After every change of the function: `cargo test --release -p simd --test math every_float -- --ignored`.
+            #[test]
+            #[ignore = "a minute or two for each function"]
+            fn every_float() {
+                let worst = worst_of(0..=u32::MAX, of_all, $exact);
+                println!("{}: {} ulp at {}", stringify!($name), worst.ulps, worst.arguments[0]);
+                worst.check($bound);
+            }
+        })*
+    };
+}
+
+unary! {
+    exp: f64::exp, 0.78, [(0.5, 1.0), (-0.5, -1.0), (88.7, 88.8), (-87.3, -87.4), (-103.9, -104.1)];
+    exp2: f64::exp2, 1.19, [(0.5, 1.01), (-0.5, -1.01), (127.9, 128.1), (-125.9, -126.1), (-148.9, -151.1)];
+    ln: f64::ln, 0.501, [(f32::from_bits(1), 1.0e-40), (1.1e-38, 1.2e-38), (0.5, 2.0), (1.0e38, 1.1e38)];
+    log2: f64::log2, 0.501, [(f32::from_bits(1), 1.0e-40), (1.1e-38, 1.2e-38), (0.5, 2.0), (1.0e38, 1.1e38)];
+    cbrt: f64::cbrt, 0.505, [(f32::from_bits(1), 1.0e-40), (0.9, 1.1), (-2.0, -4.0), (3.3e38, f32::MAX)];
+    sin: f64::sin, 0.95, [(0.5, 1.0), (-3.1, -3.2), (131_000.0, 131_200.0), (3.3e38, f32::MAX)];
+    cos: f64::cos, 0.95, [(0.5, 1.0), (-1.5, -1.6), (131_000.0, 131_200.0), (3.3e38, f32::MAX)];
+    tan: f64::tan, 1.3, [(0.5, 1.0), (-1.5, -1.6), (131_000.0, 131_200.0), (3.3e38, f32::MAX)];
+    asin: f64::asin, 0.72, [(0.5, 1.01), (-0.49, -0.51)];
+    acos: f64::acos, 0.69, [(0.5, 1.01), (-0.49, -0.51), (-0.99, -1.01)];
+    atan: f64::atan, 0.85, [(0.4, 0.8), (0.99, 1.01), (-2.4, -2.5)];
 }
 
 simd::kernel! {
@@ -65,62 +115,26 @@ simd::kernel! {
     }
 }
 
-/// The worst result for the floats with these bit patterns.
-fn worst_of(patterns: RangeInclusive<u32>, function: fn(Level, &mut [f32]), exact: fn(f64) -> f64) -> Worst {
-    let level = Level::best();
-    let mut worst = Worst::default();
-    let mut first = *patterns.start() & !15;
-    loop {
-        let last = first.saturating_add((1 << 16) - 1).min(*patterns.end() | 15);
-        let x: Vec<f32> = (first..=last).map(f32::from_bits).collect();
-        let mut got = x.clone();
-        function(level, &mut got);
-        for (&x, got) in x.iter().zip(got) {
-            worst.take(got, exact(f64::from(x)), [x, 0.0]);
-        }
-        if last >= *patterns.end() {
-            return worst;
-        }
-        first = last + 1;
-    }
-}
-
-fn bits_between(low: f32, high: f32) -> RangeInclusive<u32> {
-    low.to_bits()..=high.to_bits()
-}
-
-#[test]
-fn exp2_of_a_binade() {
-    for sign in [1.0, -1.0] {
-        for (low, high) in [(0.5, 1.0), (1.0, 1.01), (64.0, 64.5), (127.5, 128.5), (125.9, 126.1), (148.9, 151.1)] {
-            worst_of(bits_between(sign * low, sign * high), exp2_of_all, f64::exp2).check(1.19);
+simd::kernel! {
+    /// In place of the ordinates.
+    fn atan2_of_all<S>(y: &mut [f32], x: &[f32]) {
+        for (y, x) in y.chunks_exact_mut(S::Float16::LANES).zip(x.chunks_exact(S::Float16::LANES)) {
+            atan2(S::Float16::load(y), S::Float16::load(x)).store(y);
         }
     }
 }
 
-#[test]
-fn log2_of_two_binades() {
-    // Denormals, and either side of 1, where the result vanishes.
-    for (low, high) in [(f32::from_bits(1), 1.0e-40), (1.1e-38, 1.2e-38), (0.5, 2.0), (1.0e38, 1.1e38)] {
-        worst_of(bits_between(low, high), log2_of_all, f64::log2).check(0.501);
+/// Knuth's MMIX generator; the upper half is the random one.
+fn random_numbers(mut state: u64) -> impl FnMut() -> u32 {
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 32) as u32
     }
-}
-
-#[test]
-#[ignore = "minutes"]
-fn every_float() {
-    worst_of(0..=u32::MAX, exp2_of_all, f64::exp2).check(1.19);
-    worst_of(0..=u32::MAX, log2_of_all, f64::log2).check(0.501);
 }
 
 #[test]
 fn pow_of_random_pairs() {
-    let mut state = 1_u64;
-    let mut random = || {
-        // Knuth's MMIX generator; the upper half is the random one.
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 32) as u32
-    };
+    let mut random = random_numbers(1);
     let n = 1 << 22;
     let (mut x, mut y) = (Vec::with_capacity(n), Vec::with_capacity(n));
     for i in 0..n {
@@ -131,7 +145,7 @@ fn pow_of_random_pairs() {
             _ => 1.0_f32.to_bits().wrapping_add_signed(random() as i32 >> (8 + random() % 23)),
         });
         // Logarithms of the result between -151 and 151, half of them between -1 and 1.
-        let scale = if random() % 2 == 0 { 151.0 } else { 1.0 };
+        let scale = if random().is_multiple_of(2) { 151.0 } else { 1.0 };
         let exponent = f64::from(random() as i32) / 2.0_f64.powi(31) * scale;
         x.push(base);
         y.push((exponent / f64::from(base).log2()) as f32);
@@ -143,6 +157,44 @@ fn pow_of_random_pairs() {
         worst.take(got, f64::from(x).powf(f64::from(y)), [x, y]);
     }
     worst.check(1.31);
+}
+
+/// The worst result of `atan2` for that many random points.
+fn worst_atan2(n: usize, seed: u64) -> Worst {
+    let mut random = random_numbers(seed);
+    let (mut y, mut x) = (Vec::with_capacity(n), Vec::with_capacity(n));
+    for i in 0..n {
+        let ordinate = random();
+        // Anywhere; at angles of all sizes that are not all but zero; about as far as the ordinate.
+        let abscissa = match i % 3 {
+            0 => random(),
+            1 => ordinate.wrapping_add_signed(random() as i32 >> (4 + random() % 8)),
+            _ => ordinate.wrapping_add_signed(random() as i32 >> 7) ^ (random() & 1 << 31),
+        };
+        y.push(f32::from_bits(ordinate));
+        x.push(f32::from_bits(abscissa));
+    }
+    let mut got = y.clone();
+    atan2_of_all(Level::best(), &mut got, &x);
+    let mut worst = Worst::default();
+    for ((got, y), x) in got.into_iter().zip(y).zip(x) {
+        worst.take(got, f64::from(y).atan2(f64::from(x)), [y, x]);
+    }
+    worst
+}
+
+#[test]
+fn atan2_of_random_pairs() {
+    worst_atan2(1 << 22, 1).check(0.86);
+}
+
+/// After every change of the function, as the other long tests.
+#[test]
+#[ignore = "a minute"]
+fn atan2_of_many_random_pairs() {
+    let worst = (0..200).map(|seed| worst_atan2(1 << 21, seed)).max_by(|a, b| a.ulps.total_cmp(&b.ulps)).unwrap();
+    println!("atan2: {} ulp at {:?}", worst.ulps, worst.arguments);
+    worst.check(0.86);
 }
 
 /// Bits, but all NaN are one.
@@ -197,5 +249,96 @@ fn special_values_of_pow() {
     }
     for (x, y) in [(-2.0, 3.0), (-2.0, 0.5), (-INF, 3.0), (-INF, -3.0), (-1.0, INF), (-1.0, NAN)] {
         assert!(pow(x, y).is_nan(), "pow({x}, {y}) = {}", pow(x, y));
+    }
+}
+
+/// `function` gives exactly these results.
+fn gives(name: &str, function: fn(f32) -> f32, expected: &[(f32, f32)]) {
+    for &(x, expected) in expected {
+        assert!(same(function(x), expected), "{name}({x:e}) = {:e}, expected {expected:e}", function(x));
+    }
+}
+
+/// Zeros, the smallest denormals and what is between them and `up_to` stay as they are.
+fn keeps_small(name: &str, function: fn(f32) -> f32, up_to: f32) {
+    for bits in (0..16).chain((16..up_to.to_bits()).step_by(9973)) {
+        let x = f32::from_bits(bits);
+        gives(name, function, &[(x, x), (-x, -x)]);
+    }
+}
+
+#[test]
+fn special_values_of_exp() {
+    let tiny = f32::from_bits(1);
+    gives("exp", exp, &[(0.0, 1.0), (-0.0, 1.0), (tiny, 1.0), (-tiny, 1.0), (INF, INF), (-INF, 0.0), (NAN, NAN)]);
+    gives("exp", exp, &[(f32::MAX, INF), (f32::MIN, 0.0), (88.73, INF), (-103.98, 0.0), (-103.97, tiny)]);
+    assert!(exp(88.722_83_f32) < INF && exp(-87.35_f32) < f32::MIN_POSITIVE && exp(-87.33_f32) > f32::MIN_POSITIVE);
+}
+
+#[test]
+fn special_values_of_ln() {
+    gives("ln", ln, &[(0.0, -INF), (-0.0, -INF), (1.0, 0.0), (INF, INF), (NAN, NAN)]);
+    gives("ln", ln, &[(-1.0, NAN), (-INF, NAN), (-f32::MIN_POSITIVE, NAN), (-f32::from_bits(1), NAN)]);
+}
+
+#[test]
+fn special_values_of_cbrt() {
+    gives("cbrt", cbrt, &[(0.0, 0.0), (-0.0, -0.0), (INF, INF), (-INF, -INF), (NAN, NAN)]);
+    for n in 1..=256 {
+        let root = n as f32;
+        gives("cbrt", cbrt, &[(root * root * root, root), (-root * root * root, -root)]);
+    }
+    for n in -49..=42 {
+        let root = 2.0_f32.powi(n);
+        gives("cbrt", cbrt, &[(root * root * root, root)]);
+    }
+}
+
+#[test]
+fn special_values_of_sin_cos_and_tan() {
+    for (name, function) in [("sin", sin as fn(f32) -> f32), ("tan", tan)] {
+        gives(name, function, &[(INF, NAN), (-INF, NAN), (NAN, NAN)]);
+        keeps_small(name, function, 1.0e-4);
+    }
+    let tiny = f32::from_bits(1);
+    gives("cos", cos, &[(0.0, 1.0), (-0.0, 1.0), (tiny, 1.0), (-tiny, 1.0), (INF, NAN), (-INF, NAN), (NAN, NAN)]);
+    for x in (0..=u32::MAX).step_by(99_991).map(f32::from_bits) {
+        let (s, c) = sin_cos(x);
+        assert!(same(s, sin(x)) && same(c, cos(x)), "sin_cos({x:e})");
+        assert!(same(sin(-x), -s) && same(cos(-x), c) && same(tan(-x), -tan(x)), "{x:e} mirrored");
+    }
+}
+
+#[test]
+fn special_values_of_asin_and_acos() {
+    use std::f32::consts::{FRAC_PI_2, PI};
+    let beyond = [INF, -INF, NAN, 1.000_000_1, -1.000_000_1, f32::MAX, f32::MIN].map(|x| (x, NAN));
+    gives("asin", asin, &beyond);
+    gives("asin", asin, &[(1.0, FRAC_PI_2), (-1.0, -FRAC_PI_2)]);
+    keeps_small("asin", asin, 1.0e-4);
+    gives("acos", acos, &beyond);
+    gives("acos", acos, &[(1.0, 0.0), (0.0, FRAC_PI_2), (-0.0, FRAC_PI_2), (f32::from_bits(1), FRAC_PI_2), (-1.0, PI)]);
+}
+
+#[test]
+fn special_values_of_atan() {
+    use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+    gives("atan", atan, &[(INF, FRAC_PI_2), (-INF, -FRAC_PI_2), (f32::MAX, FRAC_PI_2), (f32::MIN, -FRAC_PI_2)]);
+    gives("atan", atan, &[(1.0, FRAC_PI_4), (-1.0, -FRAC_PI_4), (NAN, NAN)]);
+    keeps_small("atan", atan, 1.0e-4);
+}
+
+#[test]
+fn special_values_of_atan2() {
+    let tiny = [f32::from_bits(1), f32::from_bits(5), f32::MIN_POSITIVE, 1.5e-38, 1.0e-30, 1.0e-18];
+    let values = [0.0, 0.3, 1.0, 2.5, 1.0e18, 1.0e30, 3.0e38, f32::MAX, INF, NAN];
+    let values: Vec<f32> = tiny.into_iter().chain(values).flat_map(|x| [x, -x]).collect();
+    for &y in &values {
+        for &x in &values {
+            // C99's rules, as `f64::atan2` follows them. The sign of a zero is that of `y`.
+            let (got, exact) = (atan2(y, x), f64::from(y).atan2(f64::from(x)));
+            let sign = got.is_nan() || got.is_sign_negative() == y.is_sign_negative();
+            assert!(sign && ulps(got, exact) < 1.0, "atan2({y:e}, {x:e}) = {got:e}, expected {exact:e}");
+        }
     }
 }

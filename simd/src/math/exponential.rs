@@ -1,20 +1,29 @@
-//! Functions computed from strict operations alone, and therefore the same bits on every level and at every width.
-//!
-//! | function | largest error found | among |
-//! |---|---|---|
-//! | [`exp2`] | 1.19 ulp | every `f32` |
-//! | [`log2`] | 0.501 ulp | every positive `f32` |
-//! | [`pow`] | 1.31 ulp | 4 * 10^8 random pairs, many of them with `x` near 1, results over the whole range |
-//!
-//! One ulp is one unit in the last place of the exact result, 2^-149 where that is denormal.
-//!
-//! ```
-//! use simd::math::{log2, pow};
-//! assert_eq!(pow(2.0_f32, 10.0), 1024.0);
-//! assert_eq!(log2(1024.0_f32), 10.0);
-//! ```
+//! Powers, logarithms and roots.
 
+use super::{Double, nearest_integer, polynomial};
 use crate::{Float, Int, Vector};
+use core::f32::consts::{LN_2, LOG2_E};
+
+/// e to the power `x`.
+///
+/// | `x` | result |
+/// |---|---|
+/// | ±0 | 1 |
+/// | -∞, or at most -103.98 | 0 |
+/// | between -103.97 and -87.34 | denormal, not flushed |
+/// | ∞, or at least 88.73 | ∞ |
+/// | NaN | NaN |
+#[inline(always)]
+pub fn exp<F: Float>(x: F) -> F {
+    let x = saturate(x, -104.0, 89.0);
+    let (n, rounded) = nearest_integer(x * F::splat(LOG2_E));
+    // x - n ln 2. The first part of ln 2 has 15 bits: its product with n, and that difference, are exact.
+    let r = Double::sum(x - rounded * F::splat(0.693_145_75), -(rounded * F::splat(1.428_606_8e-6)));
+    // (e^r - 1 - r) / r^2: minimax, relative error of the result below 2^-28.
+    let q = polynomial(r.hi, [0.499_999_94, 0.166_665_15, 0.041_668_087, 0.008_369_296, 0.001_383_822]);
+    let sum = Double::sum(F::splat(1.0), r.hi);
+    scaled(sum.hi + (sum.lo + (r.lo + r.hi * r.hi * q)), n)
+}
 
 /// 2 to the power `x`; exact when `x` is an integer.
 ///
@@ -27,8 +36,9 @@ use crate::{Float, Int, Vector};
 /// | NaN | NaN |
 #[inline(always)]
 pub fn exp2<F: Float>(x: F) -> F {
-    let (n, fraction) = nearest_integer(saturate(x));
-    exp2_of_parts(n, fraction)
+    let x = saturate(x, -151.0, 129.0);
+    let (n, rounded) = nearest_integer(x);
+    exp2_of_parts(n, x - rounded)
 }
 
 /// Base-2 logarithm; exact when `x` is a power of two.
@@ -42,10 +52,31 @@ pub fn exp2<F: Float>(x: F) -> F {
 /// | negative, NaN | NaN |
 #[inline(always)]
 pub fn log2<F: Float>(x: F) -> F {
+    logarithm(x, log2_of_finite(x).hi)
+}
+
+/// Natural logarithm.
+///
+/// | `x` | result |
+/// |---|---|
+/// | ±0 | -∞ |
+/// | denormal | as accurate as elsewhere |
+/// | 1 | 0 |
+/// | ∞ | ∞ |
+/// | negative, NaN | NaN |
+#[inline(always)]
+pub fn ln<F: Float>(x: F) -> F {
+    let ln_2 = Double { hi: F::splat(LN_2), lo: F::splat(-1.904_654_2e-9) };
+    logarithm(x, log2_of_finite(x).times(ln_2).hi)
+}
+
+/// `of_finite` where `x` is positive and finite, else what any logarithm gives.
+#[inline(always)]
+fn logarithm<F: Float>(x: F, of_finite: F) -> F {
     let (zero, infinity) = (F::splat(0.0), F::splat(f32::INFINITY));
     let special = F::select(x.eq(infinity), infinity, F::splat(f32::NAN));
     let special = F::select(x.eq(zero), -infinity, special);
-    F::select(x.gt(zero) & x.lt(infinity), log2_of_finite(x).hi, special)
+    F::select(x.gt(zero) & x.lt(infinity), of_finite, special)
 }
 
 /// `x` to the power `y`, for `x >= 0`. -0 counts as 0.
@@ -71,10 +102,10 @@ pub fn pow<F: Float>(x: F, y: F) -> F {
     let bounded = limit.min((-limit).max(y));
     let product = Double::product(log.hi, bounded);
     let exponent = Double::sum(product.hi, product.lo + log.lo * bounded);
-    let saturated = saturate(exponent.hi);
-    let (n, fraction) = nearest_integer(saturated);
+    let saturated = saturate(exponent.hi, -151.0, 129.0);
+    let (n, rounded) = nearest_integer(saturated);
     let rest = F::select(saturated.eq(exponent.hi), exponent.lo, zero);
-    let power = exp2_of_parts(n, fraction + rest);
+    let power = exp2_of_parts(n, saturated - rounded + rest);
 
     let grows = x.eq(zero) ^ y.gt(zero);
     let of_zero_or_infinity = F::select(grows, infinity, zero);
@@ -83,35 +114,57 @@ pub fn pow<F: Float>(x: F, y: F) -> F {
     F::select(x.eq(one) | y.eq(zero), one, power)
 }
 
-/// `x` where 2^x is finite and not 0, else the nearest number for which it is not. NaN stays.
+/// Cube root, of negative numbers too.
+///
+/// | `x` | result |
+/// |---|---|
+/// | ±0, ±∞, NaN | `x` |
+/// | denormal | as accurate as elsewhere |
+/// | negative | minus the root of `-x` |
 #[inline(always)]
-fn saturate<F: Float>(x: F) -> F {
-    // `min` and `max` return their second operand when one is NaN.
-    F::splat(129.0).min(F::splat(-151.0).max(x))
+pub fn cbrt<F: Float>(x: F) -> F {
+    // Away from the ends of the range, where cubes overflow and their rounding errors underflow: by 2^±72.
+    let magnitude = x.abs();
+    let small = magnitude.lt(F::splat(1.0));
+    let a = magnitude * F::select(small, F::splat(4.722_366_5e21), F::splat(2.117_582_4e-22));
+    let unscale = F::select(small, F::splat(1.0 / 16_777_216.0), F::splat(16_777_216.0));
+
+    // A third of the bit pattern is about a third of the logarithm: 5 bits. Halley's step triples them.
+    let third = (F::from_int(F::Int::from_uint(a.to_bits())) * F::splat(1.0 / 3.0)).to_int();
+    let y = F::from_bits(third.to_uint() + F::Index::splat(709_958_130));
+    let cube = y * y * y;
+    let y = y * ((cube + a + a) / (cube + cube + a));
+    // Newton's step doubles them; only the difference needs all bits of the cube.
+    let square = Double::product(y, y);
+    let cube = Double::product(square.hi, y);
+    let difference = (a - cube.hi) - cube.lo - square.lo * y;
+    let root = y + difference / (F::splat(3.0) * square.hi);
+
+    let regular = magnitude.gt(F::splat(0.0)) & magnitude.lt(F::splat(f32::INFINITY));
+    F::select(regular, (root * unscale).copysign(x), x)
 }
 
-/// The integer nearest to `x`, and `x` less that, exactly: for |x| < 2^22.
+/// `x` between two bounds. NaN stays.
 #[inline(always)]
-fn nearest_integer<F: Float>(x: F) -> (F::Int, F) {
-    // 1.5 * 2^23: the sum has no bits for a fraction, so the addition rounds, and its lowest bits are the integer.
-    let magic = F::splat(12_582_912.0);
-    let sum = x + magic;
-    let n = F::Int::from_uint(sum.to_bits() - magic.to_bits());
-    (n, x - (sum - magic))
+fn saturate<F: Float>(x: F, low: f32, high: f32) -> F {
+    // `min` and `max` return their second operand when one is NaN.
+    F::splat(high).min(F::splat(low).max(x))
 }
 
 /// 2^(n + fraction), for |fraction| <= 1/2 and n between -151 and 129.
 #[inline(always)]
 fn exp2_of_parts<F: Float>(n: F::Int, fraction: F) -> F {
     // (2^x - 1) / x: minimax, absolute error of x times it below 2^-28.
-    let q = polynomial(
-        fraction,
-        [std::f32::consts::LN_2, 0.240_226_5, 0.055_503_394, 0.009_618_012, 0.001_339_691_3, 0.000_154_744_1],
-    );
-    let power = F::splat(1.0) + fraction * q;
+    let q = polynomial(fraction, [LN_2, 0.240_226_5, 0.055_503_394, 0.009_618_012, 0.001_339_691_3, 0.000_154_744_1]);
+    scaled(F::splat(1.0) + fraction * q, n)
+}
+
+/// `x * 2^n`, for `x` between 1/2 and 2 and n between -151 and 129.
+#[inline(always)]
+fn scaled<F: Float>(x: F, n: F::Int) -> F {
     // In two steps, both of them normal numbers: the first product is exact, the second rounds if the result is denormal.
     let half = n >> 1;
-    power * power_of_two(half) * power_of_two(n - half)
+    x * power_of_two(half) * power_of_two(n - half)
 }
 
 /// 2^n, for n between -126 and 127.
@@ -134,13 +187,10 @@ fn log2_of_finite<F: Float>(x: F) -> Double<F> {
     let exponent = F::from_int(F::Int::from_uint(bits >> 23)) - bias;
     let m = F::from_bits((bits & F::Index::splat(0x7f_ffff)) + F::Index::splat(SQRT_HALF));
 
-    // log2 m = (2 / ln 2) atanh s, s = (m - 1) / (m + 1); the division's remainder gives the lower half of s.
+    // log2 m = (2 / ln 2) atanh s, s = (m - 1) / (m + 1).
     let numerator = m - F::splat(1.0);
     let denominator = Double::sum(F::splat(2.0), numerator);
-    let s = numerator / denominator.hi;
-    let back = Double::product(s, denominator.hi);
-    let remainder = (numerator - back.hi) - back.lo - s * denominator.lo;
-    let s = Double { hi: s, lo: remainder / denominator.hi };
+    let s = Double { hi: numerator, lo: F::splat(0.0) }.over(denominator);
 
     // s (c1 + z (c3 + z q(z))), z = s^2: the series' first two coefficients in two floats each, q minimax.
     let z = s.times(s);
@@ -151,58 +201,4 @@ fn log2_of_finite<F: Float>(x: F) -> Double<F> {
     let log = s.times(outer);
     let sum = Double::sum(exponent, log.hi);
     Double::sum(sum.hi, sum.lo + log.lo)
-}
-
-/// `c[0] + c[1] x + c[2] x^2 + ...` (Horner).
-#[inline(always)]
-fn polynomial<F: Float, const N: usize>(x: F, c: [f32; N]) -> F {
-    let mut sum = F::splat(c[N - 1]);
-    let mut i = N - 1;
-    while i > 0 {
-        i -= 1;
-        sum = sum * x + F::splat(c[i]);
-    }
-    sum
-}
-
-/// A number as the sum of two floats, the second no larger than the rounding error of the first: about 48 bits
-/// (T. J. Dekker, "A floating-point technique for extending the available precision", 1971).
-#[derive(Clone, Copy)]
-struct Double<F> {
-    hi: F,
-    lo: F,
-}
-
-impl<F: Float> Double<F> {
-    /// `a + b` exactly, for |a| >= |b| or a = 0.
-    #[inline(always)]
-    fn sum(a: F, b: F) -> Self {
-        let hi = a + b;
-        Self { hi, lo: b - (hi - a) }
-    }
-
-    /// `a * b` exactly, where nothing over- or underflows.
-    #[inline(always)]
-    fn product(a: F, b: F) -> Self {
-        // 12 bits above and 12 below: the products of such halves are exact.
-        let upper = F::Index::splat(0xffff_f000);
-        let (a1, b1) = (F::from_bits(a.to_bits() & upper), F::from_bits(b.to_bits() & upper));
-        let (a2, b2) = (a - a1, b - b1);
-        let hi = a * b;
-        Self { hi, lo: a2 * b2 + (a2 * b1 + (a1 * b2 + (a1 * b1 - hi))) }
-    }
-
-    /// `self * other`, within a few units of the last place of `lo`.
-    #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        let product = Self::product(self.hi, other.hi);
-        let cross = self.hi * other.lo + self.lo * other.hi;
-        Self::sum(product.hi, product.lo + cross)
-    }
-
-    /// `self + x` for an `x` of the size of `lo`.
-    #[inline(always)]
-    fn plus_small(self, x: F) -> Self {
-        Self { hi: self.hi, lo: self.lo + x }
-    }
 }
