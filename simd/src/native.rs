@@ -144,6 +144,12 @@ types! {
     Uint16
     /// Mask of sixteen lanes.
     Bool16
+    /// Two `f64`.
+    Double2
+    /// Four `f64`.
+    Double4
+    /// Eight `f64`.
+    Double8
     /// `f32` in the width of the registers.
     Float
 }

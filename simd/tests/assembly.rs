@@ -1,5 +1,5 @@
-//! The machine code of a few kernels at each level: packed instructions of the level's registers and no call in the loop; and
-//! no packed arithmetic at all at level serial, the honest emulation.
+//! The machine code of a few kernels at each level: packed instructions of the level's registers, no call in the loop and no
+//! vector put aside in memory; and no packed arithmetic at all at level serial, the honest emulation.
 //!
 //! The code is found in this executable by markers: a `nop` with a number no one else uses, before the loop and behind it.
 //! Names would not do: at each level the function is called `run`, and some formats of executables have no names at all. The
@@ -14,7 +14,7 @@ fn assembly() {
 
 #[cfg(target_arch = "x86_64")]
 mod x86_64 {
-    use iced_x86::{Decoder, DecoderOptions, FlowControl, Instruction, Register};
+    use iced_x86::{Decoder, DecoderOptions, FlowControl, Instruction, OpKind, Register};
     use object::{Object, ObjectSection, SectionKind};
     use simd::{Block, Float, Int, Isa, Level, Mask, Simd, Vector, math};
     use std::collections::{BTreeMap, BTreeSet};
@@ -26,6 +26,10 @@ mod x86_64 {
     const ELEMENTWISE: i32 = 0x5eed_1000;
     const POWER: i32 = 0x5eed_2000;
     const COUNT: i32 = 0x5eed_3000;
+    const SAXPY: i32 = 0x5eed_4000;
+    const MOLLER_TRUMBORE: i32 = 0x5eed_5000;
+    const TRANSPOSE: i32 = 0x5eed_6000;
+    const COMPRESS: i32 = 0x5eed_7000;
     const END: i32 = 0x100;
 
     const fn marker<S: Simd>(kernel: i32) -> i32 {
@@ -124,6 +128,94 @@ mod x86_64 {
         }
     }
 
+    simd::kernel! {
+        fn saxpy<S>(a: f32, x: &[Block<f32>], y: &mut [Block<f32>]) {
+            mark!(marker::<S>(SAXPY));
+            let a = S::Float::splat(a);
+            for (x, y) in x.iter().zip(y) {
+                for chunk in 0..16 / S::Float::LANES {
+                    (a * S::Float::load_block(x, chunk) + S::Float::load_block(y, chunk)).store_block(y, chunk);
+                }
+            }
+            mark!(marker::<S>(SAXPY) + END);
+        }
+    }
+
+    type Vec3<F> = [F; 3];
+
+    #[inline(always)]
+    fn cross<F: Float>(a: Vec3<F>, b: Vec3<F>) -> Vec3<F> {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    }
+
+    #[inline(always)]
+    fn dot<F: Float>(a: Vec3<F>, b: Vec3<F>) -> F {
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    }
+
+    /// Distances along one ray to a vector of triangles, infinite where it misses: vertex, edge, edge.
+    #[inline(always)]
+    fn distance<F: Float>(triangle: [Vec3<F>; 3], origin: Vec3<F>, dir: Vec3<F>) -> F {
+        let [v0, e1, e2] = triangle;
+        let from = [origin[0] - v0[0], origin[1] - v0[1], origin[2] - v0[2]];
+        let (p, q) = (cross(dir, e2), cross(from, e1));
+        let inverse = F::splat(1.0) / dot(e1, p);
+        let (u, v, t) = (dot(from, p) * inverse, dot(dir, q) * inverse, dot(e2, q) * inverse);
+        let zero = F::splat(0.0);
+        let hit = zero.le(u) & zero.le(v) & (u + v).le(F::splat(1.0)) & zero.le(t);
+        F::select(hit, t, F::splat(f32::INFINITY))
+    }
+
+    simd::kernel! {
+        fn moller_trumbore<S>(triangles: &[[Block<f32>; 9]], origin: &[f32; 3], dir: &[f32; 3], out: &mut [Block<f32>]) {
+            mark!(marker::<S>(MOLLER_TRUMBORE));
+            let origin = [S::Float::splat(origin[0]), S::Float::splat(origin[1]), S::Float::splat(origin[2])];
+            let dir = [S::Float::splat(dir[0]), S::Float::splat(dir[1]), S::Float::splat(dir[2])];
+            for (triangle, out) in triangles.iter().zip(out) {
+                for chunk in 0..16 / S::Float::LANES {
+                    let mut corners = [[S::Float::default(); 3]; 3];
+                    for (k, block) in triangle.iter().enumerate() {
+                        corners[k / 3][k % 3] = S::Float::load_block(block, chunk);
+                    }
+                    distance(corners, origin, dir).store_block(out, chunk);
+                }
+            }
+            mark!(marker::<S>(MOLLER_TRUMBORE) + END);
+        }
+    }
+
+    simd::kernel! {
+        /// Squares of as many blocks as a vector has lanes, of which the first chunks are used.
+        fn transpose<S>(squares: &mut [[Block<f32>; 16]]) {
+            mark!(marker::<S>(TRANSPOSE));
+            for square in squares {
+                let mut rows = [S::Float::default(); 16];
+                for i in 0..S::Float::LANES {
+                    rows[i] = S::Float::load_block(&square[i], 0);
+                }
+                S::Float::transpose(&mut rows[..S::Float::LANES]);
+                for i in 0..S::Float::LANES {
+                    rows[i].store_block(&mut square[i], 0);
+                }
+            }
+            mark!(marker::<S>(TRANSPOSE) + END);
+        }
+    }
+
+    simd::kernel! {
+        /// The positive numbers of each vector to its front.
+        fn compress<S>(numbers: &mut [Block<f32>]) {
+            mark!(marker::<S>(COMPRESS));
+            for block in numbers {
+                for chunk in 0..16 / S::Float::LANES {
+                    let x = S::Float::load_block(block, chunk);
+                    x.compress(x.gt(S::Float::default())).store_block(block, chunk);
+                }
+            }
+            mark!(marker::<S>(COMPRESS) + END);
+        }
+    }
+
     /// Calls the kernels at every level, with which they are in the executable; and they do what they say.
     fn kernels_work(level: Level) {
         let planes = |x: f32| Block(std::array::from_fn(|i| x + i as f32));
@@ -144,6 +236,23 @@ mod x86_64 {
         assert_eq!(powers, [Block([9.0; 16]); 2], "{level}");
         let numbers = black_box(vec![planes(0.0), planes(4.0)]);
         assert_eq!(count(level, &numbers, 5.0, 6.5), 4, "{level}");
+
+        let mut y = black_box(vec![Block([1.0; 16]); 2]);
+        saxpy(level, 2.0, &numbers, &mut y);
+        assert_eq!(y[1].0[15], 39.0, "{level}");
+        // In the plane x = 3, 4, ..., 18; the ray flies in x.
+        let triangle = [planes(3.0), Block([-1.0; 16]), Block([-1.0; 16])];
+        let edges = [0.0, 4.0, 0.0, 0.0, 0.0, 4.0].map(|x| Block([x; 16]));
+        let triangles = black_box(vec![std::array::from_fn(|k| if k < 3 { triangle[k] } else { edges[k - 3] }); 2]);
+        let mut out = [Block::default(); 2];
+        moller_trumbore(level, &triangles, &[0.0; 3], &[1.0, 0.0, 0.0], &mut out);
+        assert_eq!(out, [planes(3.0); 2], "{level}");
+        let mut squares = black_box(vec![std::array::from_fn(|i| planes(16.0 * i as f32)); 2]);
+        transpose(level, &mut squares);
+        assert_eq!(squares[1][3].0[2], 35.0, "{level}");
+        let mut numbers = black_box(vec![Block(std::array::from_fn(|i| i as f32 - 2.0)); 2]);
+        compress(level, &mut numbers);
+        assert_eq!(numbers[1].0[..2], if level.isa().lanes() == 4 { [1.0, 0.0] } else { [1.0, 2.0] }, "{level}");
     }
 
     // ---- Their code ----
@@ -223,6 +332,14 @@ mod x86_64 {
         code.iter().map(|i| format!("{:x}: {}\n", i.ip(), name(i))).collect()
     }
 
+    /// A vector put aside on the stack.
+    fn is_spill(instruction: &Instruction) -> bool {
+        let to_stack = instruction.op0_kind() == OpKind::Memory
+            && matches!(instruction.memory_base(), Register::RSP | Register::RBP)
+            && instruction.op_count() > 1;
+        to_stack && (1..instruction.op_count()).any(|k| instruction.op_register(k).is_vector_register())
+    }
+
     fn check(isa: Isa, kernel: i32, code: &[Instruction], body: &[Instruction], expected: &[&str]) {
         let context = format!("{isa}, kernel {kernel:x}:\n{}in the loop:\n{}", listing(code), listing(body));
         assert!(!body.is_empty(), "no loop: {context}");
@@ -242,6 +359,18 @@ mod x86_64 {
             }
             _ => return,
         };
+        // The power and the triangle test need more than sixteen registers; SSE2 has no shuffle by a variable.
+        let spills = match kernel {
+            // Checks of arithmetic take registers, too.
+            _ if cfg!(debug_assertions) => true,
+            POWER => true,
+            MOLLER_TRUMBORE => isa != Isa::Avx512,
+            COMPRESS => isa == Isa::Sse2,
+            _ => false,
+        };
+        if !spills {
+            assert!(!body.iter().any(is_spill), "a vector goes to the stack: {context}");
+        }
         let prefix = if matches!(isa, Isa::Sse2 | Isa::Sse42) { "" } else { "v" };
         for op in expected {
             let op = format!("{prefix}{op}");
@@ -278,6 +407,18 @@ mod x86_64 {
                 (ELEMENTWISE, &["addps", "subps", "mulps", "divps", "sqrtps", "cmpps", "cvtdq2ps"]),
                 (POWER, &["addps", "subps", "mulps", "divps", "cmpps", "cvtdq2ps"]),
                 (COUNT, &["cmpps"]),
+                (SAXPY, &["mulps", "addps"]),
+                (MOLLER_TRUMBORE, &["mulps", "subps", "addps", "divps", "cmpps"]),
+                (TRANSPOSE, if isa == Isa::Avx512 { &["permt2ps"] } else { &["unpcklps", "unpckhps"] }),
+                (
+                    COMPRESS,
+                    match isa {
+                        Isa::Sse2 => &["cmpps"],
+                        Isa::Sse42 => &["pshufb"],
+                        Isa::Avx2 => &["permd"],
+                        _ => &["compressps"],
+                    },
+                ),
             ] {
                 let mut copies = 0;
                 for text in &text {

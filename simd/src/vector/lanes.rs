@@ -256,7 +256,13 @@ pub trait Vector: Sealed + List + Copy + Debug + Default + Send + Sync + 'static
             for i in 0..n / 2 {
                 (shuffled[2 * i], shuffled[2 * i + 1]) = rows[i].interleave(rows[i + n / 2]);
             }
-            rows.copy_from_slice(&shuffled[..n]);
+            #[allow(
+                clippy::manual_memcpy,
+                reason = "a copy of slices becomes a call, and the vectors go through memory"
+            )]
+            for i in 0..n {
+                rows[i] = shuffled[i];
+            }
             pass *= 2;
         }
     }
