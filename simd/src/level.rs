@@ -27,12 +27,27 @@ pub enum Isa {
     Avx512,
     /// ARM: Advanced SIMD, four lanes.
     Neon,
+    /// WebAssembly: SIMD, four lanes. Not detected but compiled in: `-C target-feature=+simd128`.
+    Wasm,
+    /// WebAssembly: relaxed SIMD, four lanes: `-C target-feature=+relaxed-simd`. Whether the relaxed operations are fused there
+    /// is up to the engine. In such a build LLVM 22 may compile `if a < b { a } else { b }` in plain
+    /// Rust to a relaxed minimum, [`Isa::Scalar`] included: of NaN and a number, or of zeros, it is either.
+    WasmRelaxed,
 }
 
 impl Isa {
     /// All of them, slowest first.
-    pub const ALL: [Self; 7] =
-        [Self::Serial, Self::Scalar, Self::Sse2, Self::Sse42, Self::Avx2, Self::Avx512, Self::Neon];
+    pub const ALL: [Self; 9] = [
+        Self::Serial,
+        Self::Scalar,
+        Self::Sse2,
+        Self::Sse42,
+        Self::Avx2,
+        Self::Avx512,
+        Self::Neon,
+        Self::Wasm,
+        Self::WasmRelaxed,
+    ];
 
     /// The name that [`Level::from_str`] and `SIMD_LEVEL` take.
     #[must_use]
@@ -45,6 +60,8 @@ impl Isa {
             Self::Avx2 => "avx2",
             Self::Avx512 => "avx512",
             Self::Neon => "neon",
+            Self::Wasm => "wasm",
+            Self::WasmRelaxed => "wasm-relaxed",
         }
     }
 
@@ -103,6 +120,11 @@ impl Isa {
             }
             #[cfg(target_arch = "aarch64")]
             Self::Neon => cpu_has!(is_aarch64_feature_detected: "neon"),
+            // An engine rejects a module with instructions it lacks as a whole: where this runs, it has them.
+            #[cfg(target_arch = "wasm32")]
+            Self::Wasm => cfg!(target_feature = "simd128"),
+            #[cfg(target_arch = "wasm32")]
+            Self::WasmRelaxed => cfg!(target_feature = "relaxed-simd"),
             #[allow(unreachable_patterns, reason = "reached by the levels of other architectures")]
             _ => false,
         }

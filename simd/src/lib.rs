@@ -1,5 +1,6 @@
 //! Portable SIMD: a kernel is written once, generic over one type parameter, and runs on scalar emulation, SSE2, SSE4.2,
-//! AVX2, AVX-512 or NEON, four, eight or sixteen lanes wide, with the same bits on all of them. No `unsafe` in your code.
+//! AVX2, AVX-512, NEON or WebAssembly, four, eight or sixteen lanes wide, with the same bits on all of them. No `unsafe` in your
+//! code.
 //!
 //! ```
 //! use simd::{Float, Level, Mask, Simd, Vector};

@@ -32,6 +32,11 @@ fn scalar_is_everywhere_and_the_best_comes_last() {
     assert!("sse2".parse::<Level>().is_ok());
     #[cfg(target_arch = "aarch64")]
     assert!("neon".parse::<Level>().is_ok());
+    // Not detected but compiled in.
+    #[cfg(target_feature = "simd128")]
+    assert!("wasm".parse::<Level>().is_ok());
+    #[cfg(target_feature = "relaxed-simd")]
+    assert_eq!("wasm-relaxed".parse(), Ok(Level::best()));
 }
 
 #[test]
@@ -39,8 +44,8 @@ fn unknown_names() {
     for name in ["", "auto", "sse5", "AVX2", " scalar", "sse42"] {
         let error = name.parse::<Level>().unwrap_err();
         assert_eq!(error, LevelError::Unknown(name.to_owned()));
-        let expected = format!("unknown level '{name}'; known: auto, serial, scalar, sse2, sse4.2, avx2, avx512, neon");
-        assert_eq!(error.to_string(), expected);
+        let known = "auto, serial, scalar, sse2, sse4.2, avx2, avx512, neon, wasm, wasm-relaxed";
+        assert_eq!(error.to_string(), format!("unknown level '{name}'; known: {known}"));
     }
 }
 

@@ -64,12 +64,14 @@ fn level() {
         Isa::Sse2
     } else if cfg!(all(target_arch = "aarch64", target_feature = "neon")) {
         Isa::Neon
+    } else if cfg!(all(target_arch = "wasm32", target_feature = "relaxed-simd")) {
+        Isa::WasmRelaxed
+    } else if cfg!(all(target_arch = "wasm32", target_feature = "simd128")) {
+        Isa::Wasm
     } else {
         Isa::Scalar
     };
-    if !cfg!(target_family = "wasm") {
-        assert_eq!(isa, expected);
-    }
+    assert_eq!(isa, expected);
     println!("compiled for {isa}");
 }
 

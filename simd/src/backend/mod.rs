@@ -11,7 +11,12 @@
 //! references whose length was checked on the line above.
 
 #![cfg_attr(
-    not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")),
+    not(any(
+        target_arch = "x86",
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )),
     allow(unused, reason = "what backends of registers share; there is only emulation here")
 )]
 #![cfg_attr(
@@ -32,6 +37,8 @@ pub(crate) mod neon;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod sse;
 mod tables;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+pub(crate) mod wasm;
 
 use crate::{Isa, Kernel, Mask, Vector};
 
@@ -149,6 +156,7 @@ fn out_of_bounds(len: u32) -> ! {
 /// `isa` comes out of a [`Level`](crate::Level): this CPU has it.
 #[inline]
 pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
+    #[allow(unused_macros, reason = "there are architectures with nothing to detect")]
     macro_rules! with_features {
         ($features:literal, $S:ty) => {{
             #[target_feature(enable = $features)]
@@ -180,6 +188,10 @@ pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
         ),
         #[cfg(target_arch = "aarch64")]
         Isa::Neon => with_features!("neon", neon::Neon),
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        Isa::Wasm => wasm::run::<wasm::Wasm, K>(kernel),
+        #[cfg(all(target_arch = "wasm32", target_feature = "relaxed-simd"))]
+        Isa::WasmRelaxed => wasm::run::<wasm::WasmRelaxed, K>(kernel),
         _ => scalar::run(kernel),
     }
 }

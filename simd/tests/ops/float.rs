@@ -1,5 +1,19 @@
 //! Floats, lane by lane.
 
+/// `a * b + c` with one rounding. Not `f32::mul_add`: without the instruction that is the C library's, and not all are right.
+fn rounded_once(a: f32, b: f32, c: f32) -> f32 {
+    let (product, c) = (f64::from(a) * f64::from(b), f64::from(c)); // exact
+    let sum = product + c;
+    let of_c = sum - product;
+    let error = (product - (sum - of_c)) + (c - of_c); // exact if finite
+    if !sum.is_finite() || error == 0.0 || sum.to_bits() & 1 == 1 {
+        return sum as f32;
+    }
+    // Rounding to odd first makes the second rounding right (Boldo and Melquiond, "Emulation of FMA", 2008).
+    let away_from_zero = (error > 0.0) == (sum > 0.0);
+    f64::from_bits(if away_from_zero { sum.to_bits() + 1 } else { sum.to_bits() - 1 }) as f32
+}
+
 operations! {
     add(a: float, b: float) -> float { a + b } is { a + b }
     sub(a: float, b: float) -> float { a - b } is { a - b }
@@ -13,13 +27,13 @@ operations! {
 
     not_fused(a: float, b: float, c: float) -> float { a * b + c } is { let product = a * b; product + c }
     mul_add(a: float, b: float, c: float) -> float { a.mul_add(b, c) } is relaxed(fused) {
-        if fused { a.mul_add(b, c) } else { a * b + c }
+        if fused { rounded_once(a, b, c) } else { a * b + c }
     }
     mul_sub(a: float, b: float, c: float) -> float { a.mul_sub(b, c) } is relaxed(fused) {
-        if fused { a.mul_add(b, -c) } else { a * b - c }
+        if fused { rounded_once(a, b, -c) } else { a * b - c }
     }
     neg_mul_add(a: float, b: float, c: float) -> float { a.neg_mul_add(b, c) } is relaxed(fused) {
-        if fused { (-a).mul_add(b, c) } else { c - a * b }
+        if fused { rounded_once(-a, b, c) } else { c - a * b }
     }
 
     neg_mul_sub(a: float, b: float, c: float) -> float { a.neg_mul_sub(b, c) } is relaxed(fused) {

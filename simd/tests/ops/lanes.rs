@@ -1,8 +1,7 @@
 //! Across the lanes of a vector, for every lane type; and how tests reach vectors by their lane type.
 
-use crate::harness::{Width, everywhere};
+use crate::harness::{Width, everywhere, same_number};
 use crate::values::{Random, SPECIAL};
-use proptest::prelude::*;
 use simd::{Block, Float, Int, Integer, Kernel, Lane, Level, Mask, Simd, Vector};
 use std::num::Wrapping;
 
@@ -80,18 +79,17 @@ fn first_of<L: PartialOrd + Copy>(lanes: &[L], mask: u32, is_better: fn(L, L) ->
     on.reduce(|best, i| if is_better(lanes[i], lanes[best]) { i } else { best })
 }
 
-fn check_reductions<L: AnyLane>(patterns: &[u32; 16], mask: u32) -> Result<(), TestCaseError> {
+fn check_reductions<L: AnyLane>(patterns: &[u32; 16], mask: u32) {
     let numbers = patterns.map(L::of_bits);
     for (level, width) in everywhere() {
         let numbers = &numbers[..width.lanes()];
         let (min, max, indices) = L::run(level, width, Reduce(numbers, mask));
-        let place = format!("{level}, {numbers:?}, mask {mask:x}");
-        prop_assert_eq!(min.bits(), tree(numbers, |a, b| if a < b { a } else { b }).bits(), "reduce_min, {}", place);
-        prop_assert_eq!(max.bits(), tree(numbers, |a, b| if a > b { a } else { b }).bits(), "reduce_max, {}", place);
+        let of = || format!("{level}, {numbers:?} = {:x?}, mask {mask:x}", &patterns[..width.lanes()]);
+        assert_eq!(min.bits(), tree(numbers, |a, b| if a < b { a } else { b }).bits(), "reduce_min, {}", of());
+        assert_eq!(max.bits(), tree(numbers, |a, b| if a > b { a } else { b }).bits(), "reduce_max, {}", of());
         let expected = [first_of(numbers, mask, |a, b| a < b), first_of(numbers, mask, |a, b| a > b)];
-        prop_assert_eq!(indices, expected, "min_index, max_index, {}", place);
+        assert_eq!(indices, expected, "min_index, max_index, {}", of());
     }
-    Ok(())
 }
 
 #[inline(always)]
@@ -105,48 +103,72 @@ simd::kernel! {
     }
 }
 
-/// Lanes with many equal and special values among them.
-fn sixteen_lanes() -> impl Strategy<Value = [u32; 16]> {
-    let lane = prop_oneof![
-        proptest::sample::select(SPECIAL.clone()),
-        proptest::sample::select(vec![0.0_f32.to_bits(), (-0.0_f32).to_bits(), 1.0_f32.to_bits(), f32::NAN.to_bits()]),
-        any::<u32>(),
-    ];
-    proptest::array::uniform16(lane)
-}
+/// How many random vectors the reductions are tried on.
+const CASES: usize = 2048;
 
-proptest! {
-    #[test]
-    fn reductions(patterns in sixteen_lanes(), mask in any::<u32>()) {
-        check_reductions::<f32>(&patterns, mask)?;
-        check_reductions::<i32>(&patterns, mask)?;
-        check_reductions::<u32>(&patterns, mask)?;
+impl Random {
+    /// Any of these.
+    fn one_of(&mut self, patterns: &[u32]) -> u32 {
+        patterns[self.bits() as usize % patterns.len()]
     }
 
-    #[test]
-    fn reduce_add(numbers in proptest::array::uniform16(prop_oneof![-16.0_f32..16.0, proptest::num::f32::ANY])) {
+    /// Lanes with many equal and special values among them.
+    fn sixteen_lanes(&mut self) -> [u32; 16] {
+        let few = [0.0, -0.0, 1.0, f32::NAN].map(f32::to_bits);
+        std::array::from_fn(|_| match self.bits() % 3 {
+            0 => self.one_of(&SPECIAL),
+            1 => self.one_of(&few),
+            _ => self.bits(),
+        })
+    }
+
+    /// Lanes of similar size, and in every other vector some of any size.
+    fn sixteen_floats(&mut self) -> [f32; 16] {
+        let wild = self.bits() % 2 == 1;
+        std::array::from_fn(|_| match wild && self.bits() % 2 == 1 {
+            true => f32::from_bits(self.bits()),
+            false => self.moderate(),
+        })
+    }
+}
+
+#[test]
+fn reductions() {
+    let mut random = Random(5);
+    for _ in 0..CASES {
+        let (patterns, mask) = (random.sixteen_lanes(), random.bits());
+        check_reductions::<f32>(&patterns, mask);
+        check_reductions::<i32>(&patterns, mask);
+        check_reductions::<u32>(&patterns, mask);
+    }
+}
+
+#[test]
+fn reduce_add() {
+    let mut random = Random(6);
+    for _ in 0..CASES {
+        let numbers = random.sixteen_floats();
         for (level, width) in everywhere() {
             let numbers = &numbers[..width.lanes()];
             let (got, expected) = (sum(level, width, numbers), tree(numbers, |a, b| a + b));
-            let same = got.to_bits() == expected.to_bits() || got.is_nan() && expected.is_nan();
-            prop_assert!(same, "{level}: got {got}, expected {expected}");
+            let same = same_number(got.to_bits(), expected.to_bits());
+            assert!(same, "{level}: of {numbers:?} got {got:e}, expected {expected:e}");
         }
     }
 }
 
 /// The lane types' largest value, as what fills the lanes that are off, is not mistaken for one of them.
 #[test]
-fn min_index_of_the_largest() -> Result<(), TestCaseError> {
+fn min_index_of_the_largest() {
     for mask in [0, 1, 2, 0x8000, 0xfff8, u32::MAX] {
-        check_reductions::<f32>(&[f32::INFINITY.to_bits(); 16], mask)?;
-        check_reductions::<f32>(&[f32::NAN.to_bits(); 16], mask)?;
-        check_reductions::<f32>(&[f32::NEG_INFINITY.to_bits(); 16], mask)?;
-        check_reductions::<i32>(&[i32::MAX as u32; 16], mask)?;
-        check_reductions::<i32>(&[i32::MIN as u32; 16], mask)?;
-        check_reductions::<u32>(&[u32::MAX; 16], mask)?;
-        check_reductions::<u32>(&[0; 16], mask)?;
+        check_reductions::<f32>(&[f32::INFINITY.to_bits(); 16], mask);
+        check_reductions::<f32>(&[f32::NAN.to_bits(); 16], mask);
+        check_reductions::<f32>(&[f32::NEG_INFINITY.to_bits(); 16], mask);
+        check_reductions::<i32>(&[i32::MAX as u32; 16], mask);
+        check_reductions::<i32>(&[i32::MIN as u32; 16], mask);
+        check_reductions::<u32>(&[u32::MAX; 16], mask);
+        check_reductions::<u32>(&[0; 16], mask);
     }
-    Ok(())
 }
 
 /// All that moves lanes about, the results one after the other, in blocks.
