@@ -1,5 +1,6 @@
 //! Levels times widths, and operations lane by lane against an expression in plain Rust.
 
+use crate::golden::Hash;
 use crate::values;
 use simd::{Isa, Level};
 
@@ -61,18 +62,30 @@ pub type Run<'a> = &'a dyn Fn(Level, Width, &[Lanes; 3], &mut Lanes);
 
 /// Runs the operation everywhere on all inputs and compares every lane with what is expected of (fused, its arguments). Where
 /// it may be fused or not, it has to be the one or the other on all inputs.
-pub fn check(arity: usize, run: Run<'_>, same: fn(u32, u32) -> bool, expected: &dyn Fn(bool, [u32; 3]) -> u32) {
+/// What is strict has to match its golden hash, too.
+pub fn check(
+    name: &str,
+    strict: bool,
+    arity: usize,
+    run: Run<'_>,
+    same: fn(u32, u32) -> bool,
+    expected: &dyn Fn(bool, [u32; 3]) -> u32,
+) {
     let rows = values::rows(arity);
     let of_all = |fused| rows.iter().map(|&row| expected(fused, row)).collect::<Vec<_>>();
     let expected = [of_all(false), of_all(true)];
     for (level, width) in everywhere() {
         let lanes = width.lanes();
-        let first_difference = |expected: &[u32]| {
+        let mut hash = Hash::new();
+        let mut first_difference = |expected: &[u32]| {
             rows.chunks_exact(lanes).zip(expected.chunks_exact(lanes)).find_map(|(rows, expected)| {
                 let arguments = std::array::from_fn(|k| std::array::from_fn(|lane| rows[lane % lanes][k]));
                 // Whatever an operation leaves unwritten will not pass for its result.
                 let mut out = [0xdead_beef; 16];
                 run(level, width, &arguments, &mut out);
+                // Whether NaN are told apart.
+                let exact = !same(0x7fc0_0000, 0x7fc0_0001);
+                out[..lanes].iter().for_each(|&x| if exact { hash.add(x) } else { hash.add_number(x) });
                 let i = (0..lanes).find(|&i| !same(out[i], expected[i]))?;
                 let of = rows[i][..arity].iter().map(|&x| readings(x)).collect::<Vec<_>>().join(" and ");
                 let (got, want) = (readings(out[i]), readings(expected[i]));
@@ -87,6 +100,9 @@ pub fn check(arity: usize, run: Run<'_>, same: fn(u32, u32) -> bool, expected: &
             none
         });
         assert!(passes, "{}", differences.join("; or if fused: "));
+        if strict {
+            hash.check(level, name, lanes);
+        }
     }
 }
 
@@ -146,7 +162,9 @@ macro_rules! operations {
         fn $name() {
             let arity = [$(stringify!($x)),+].len();
             let run = |level, width, arguments: &_, out: &mut _| run(level, width, Operation::$name, arguments, out);
-            $crate::harness::check(arity, &run, comparison!($out), &|_fused, [$($x,)+ ..]| {
+            let relaxed: &[&str] = &[$(stringify!($fused))?];
+            let name = concat!(module_path!(), "::", stringify!($name)).trim_start_matches("ops::");
+            $crate::harness::check(name, relaxed.is_empty(), arity, &run, comparison!($out), &|_fused, [$($x,)+ ..]| {
                 $(let $x = number_of!($kind, $x);)+
                 $(let $fused = _fused;)?
                 bits_of_number!($out, $number)

@@ -1,5 +1,6 @@
 //! Across the lanes of a vector, for every lane type; and how tests reach vectors by their lane type.
 
+use crate::golden::Hash;
 use crate::harness::{Width, everywhere, same_number};
 use crate::values::{Random, SPECIAL};
 use simd::{Block, Float, Int, Integer, Kernel, Lane, Level, Mask, Simd, Vector};
@@ -223,9 +224,9 @@ fn bits_of<L: AnyLane>(lanes: &[L]) -> Vec<u32> {
     lanes.iter().map(|x| x.bits()).collect()
 }
 
-fn check_moves<L: AnyLane>(a: &[u32; 16], b: &[u32; 16], index: &[u32; 16], n: usize, mask: u32) {
+fn check_moves<L: AnyLane>(a: &[u32; 16], b: &[u32; 16], index: &[u32; 16], n: usize, mask: u32, hashes: &mut [Hash]) {
     let (a, b) = (a.map(L::of_bits), b.map(L::of_bits));
-    for (level, width) in everywhere() {
+    for ((level, width), hash) in everywhere().zip(hashes) {
         let lanes = width.lanes();
         let mut out = Vec::new();
         let count = L::run(level, width, Move { a: &a, b: &b, index, n, mask, out: &mut out });
@@ -255,6 +256,7 @@ fn check_moves<L: AnyLane>(a: &[u32; 16], b: &[u32; 16], index: &[u32; 16], n: u
         assert_eq!(out.len(), expected.len());
         for (k, (got, mut expected)) in out.iter().zip(expected).enumerate() {
             expected.resize(16, zero);
+            got.0.iter().for_each(|x| hash.add(x.bits()));
             assert_eq!(bits_of(&got.0), bits_of(&expected), "{level}, {width:?}, result {k}, n {n}, mask {mask:x}");
         }
     }
@@ -264,13 +266,19 @@ fn check_moves<L: AnyLane>(a: &[u32; 16], b: &[u32; 16], index: &[u32; 16], n: u
 #[test]
 fn moves() {
     let mut random = Random(7);
+    let mut hashes = [(); 3].map(|()| vec![Hash::new(); everywhere().count()]);
     for round in 0..2000 {
         let mut row = || std::array::from_fn(|_| random.bits());
         let (a, b, index) = (row(), row(), row());
         let (n, mask) = (random.bits() as usize % 40, if round < 256 { round | round << 8 } else { random.bits() });
-        check_moves::<f32>(&a, &b, &index, n, mask);
-        check_moves::<i32>(&a, &b, &index, n, mask);
-        check_moves::<u32>(&a, &b, &index, n, mask);
+        check_moves::<f32>(&a, &b, &index, n, mask, &mut hashes[0]);
+        check_moves::<i32>(&a, &b, &index, n, mask, &mut hashes[1]);
+        check_moves::<u32>(&a, &b, &index, n, mask, &mut hashes[2]);
+    }
+    for (name, hashes) in ["lanes::moves_f32", "lanes::moves_i32", "lanes::moves_u32"].iter().zip(hashes) {
+        for ((level, width), hash) in everywhere().zip(hashes) {
+            hash.check(level, name, width.lanes());
+        }
     }
 }
 
@@ -319,15 +327,19 @@ fn kogge_stone<L: Copy>(lanes: &[L], add: fn(L, L) -> L) -> Vec<L> {
 #[test]
 fn folds() {
     let mut random = Random(8);
+    let mut hashes = vec![Hash::new(); everywhere().count()];
     for round in 0..3000 {
         let bits: [u32; 16] = std::array::from_fn(|_| match round % 3 {
             0 => random.bits(),
             1 => SPECIAL[random.bits() as usize % SPECIAL.len()],
             _ => (random.bits() as f32 / 1e9 - 2.0).to_bits(),
         });
-        for (level, width) in everywhere() {
+        for ((level, width), hash) in everywhere().zip(&mut hashes) {
             let (lanes, place) = (width.lanes(), format!("{level}, {width:?}, {bits:x?}"));
             let got = fold(level, width, &bits);
+            let floats = got.float.iter().flat_map(|block| block.0).chain([got.product]);
+            floats.for_each(|x| hash.add_number(x.to_bits()));
+            got.integer.iter().flat_map(|block| block.0).chain(got.folds).for_each(|x| hash.add(x));
             let same = |a: f32, b: f32| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
 
             let floats: Vec<f32> = bits[..lanes].iter().map(|&b| f32::from_bits(b)).collect();
@@ -348,6 +360,9 @@ fn folds() {
             let product = bits[..lanes].iter().fold(1, |a: u32, &b| a.wrapping_mul(b));
             assert_eq!(got.folds, [sums[lanes], product, sums[lanes], product], "{place}: folds of integers");
         }
+    }
+    for ((level, width), hash) in everywhere().zip(hashes) {
+        hash.check(level, "lanes::folds", width.lanes());
     }
 }
 

@@ -5,6 +5,7 @@ mod harness;
 mod double;
 mod estimates;
 mod float;
+mod golden;
 mod integer;
 mod lanes;
 mod mask;
