@@ -40,6 +40,7 @@
 //! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Double`], [`Mask`]: what they can do;
 //!   [`operations`]: all of it in one table.
 //! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
+//! - [`coming_from`]: the idioms of other libraries.
 //! - [`interop`]: conversions for bytemuck, glam, wide and pulp, each a feature.
 //!
 //! # Features
@@ -102,6 +103,7 @@ extern crate core as std;
 mod aligned;
 mod backend;
 mod block;
+pub mod coming_from;
 pub mod interop;
 mod level;
 pub mod math;
