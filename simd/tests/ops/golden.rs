@@ -30,6 +30,10 @@ impl Hash {
 
     /// Compares with the golden hash of this name and number of lanes.
     pub fn check(self, level: Level, name: &str, lanes: usize) {
+        // The FPU of a CPU without SSE2 makes signalling NaNs quiet on their way: not even the arguments are the same there.
+        if cfg!(all(target_arch = "x86", not(target_feature = "sse2"))) {
+            return;
+        }
         let line = format!("{name} {lanes} {:016x}", self.0);
         if let Some(path) = std::env::var_os("SIMD_GOLDEN") {
             let mut file = std::fs::OpenOptions::new().create(true).append(true).open(path).unwrap();
