@@ -297,7 +297,7 @@ impl<V: Float> Float for Pair<V> {
 
     lanewise! {
         abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round();
-        mul_add(b, c); mul_sub(b, c); neg_mul_add(b, c); neg_mul_sub(b, c); mul_add_exact(b, c);
+        mul_add(b, c); mul_sub(b, c); neg_mul_add(b, c); neg_mul_sub(b, c); mul_add_exact(b, c); product_error(b, product);
         rcp_approx(); rsqrt_approx();
     }
     #[inline(always)]

@@ -138,9 +138,9 @@ fn keep_zero<F: Float>(x: F, result: F) -> F {
 fn reduced<F: Float>(x: F) -> (F::Index, Double<F>) {
     let (n, rounded) = nearest_integer(x * F::splat(FRAC_2_PI));
     // π/2 in three floats. The first difference is exact, the products with the first two are too.
-    let first = Double::product(rounded, F::splat(FRAC_PI_2));
+    let first = exact_product(rounded, FRAC_PI_2);
     let r = Double::sum(x - first.hi, -first.lo);
-    let second = Double::product(rounded, F::splat(-4.371_139e-8));
+    let second = exact_product(rounded, -4.371_139e-8);
     let difference = Double::sum(r.hi, -second.hi);
     let rest = (r.lo - second.lo) - rounded * F::splat(-1.715_124_5e-15);
     let mut r = Double::sum(difference.hi, difference.lo + rest);
@@ -154,6 +154,14 @@ fn reduced<F: Float>(x: F) -> (F::Index, Double<F>) {
         r = Double { hi: F::load_block(&his, 0), lo: F::load_block(&los, 0) };
     }
     (n, r)
+}
+
+/// `a * b` exactly, where nothing over- or underflows: with the level's fused operation the same bits as without.
+#[inline(always)]
+fn exact_product<F: Float>(a: F, b: f32) -> Double<F> {
+    let b = F::splat(b);
+    let hi = a * b;
+    Double { hi, lo: a.product_error(b, hi) }
 }
 
 /// Up to here `x` 2/π has fraction bits enough to find the nearest integer, almost: to keep |r| below 0.8.

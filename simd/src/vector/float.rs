@@ -60,6 +60,18 @@ pub trait Float:
         Self::from_fn(|i| crate::backend::soft::mul_add(x.0[i], b.0[i], c.0[i]))
     }
 
+    /// `self * b - product`, where `product` is `self * b`, rounded: what rounding lost. Exact, and with the same bits on every
+    /// level, where nothing over- or underflows, for magnitudes between 2^-50 and 2^60, say; elsewhere levels differ.
+    #[doc(alias("two_product"))]
+    #[inline(always)]
+    fn product_error(self, b: Self, product: Self) -> Self {
+        // 12 bits above and 12 below: the products of such halves are exact (T. J. Dekker 1971).
+        let upper = Self::Index::splat(0xffff_f000);
+        let (a1, b1) = (Self::from_bits(self.to_bits() & upper), Self::from_bits(b.to_bits() & upper));
+        let (a2, b2) = (self - a1, b - b1);
+        a2 * b2 + (a2 * b1 + (a1 * b2 + (a1 * b1 - product)))
+    }
+
     /// An estimate of `1 / self`, *relaxed*: its bits differ between levels and between makers of CPUs. For `self`
     /// between 2^-64 and 2^64 in magnitude the relative error is at most 2^-8 (NEON; elsewhere 2^-11); nothing is said of others.
     /// Levels without the instruction divide.

@@ -33,6 +33,31 @@ macro_rules! vector {
                 let (low, high) = intrinsics!((_mm256_castps256_ps128(x), _mm256_extractf128_ps::<1>(x)));
                 (<$Half>::of_ps(low), <$Half>::of_ps(high))
             }
+
+            /// Fields `at` to `at + 3` of eight rows.
+            #[inline(always)]
+            fn load_fields<const N: usize>(rows: &[[$Lane; N]], at: usize) -> [Self; 4] {
+                let rows = &rows[..8];
+                let [a, b, c, d] = transpose([
+                    join(<$Half>::load(&rows[0][at..]).ps(), <$Half>::load(&rows[4][at..]).ps()),
+                    join(<$Half>::load(&rows[1][at..]).ps(), <$Half>::load(&rows[5][at..]).ps()),
+                    join(<$Half>::load(&rows[2][at..]).ps(), <$Half>::load(&rows[6][at..]).ps()),
+                    join(<$Half>::load(&rows[3][at..]).ps(), <$Half>::load(&rows[7][at..]).ps()),
+                ]);
+                [Self::of_ps(a), Self::of_ps(b), Self::of_ps(c), Self::of_ps(d)]
+            }
+
+            /// The inverse.
+            #[inline(always)]
+            fn store_fields<const N: usize>([a, b, c, d]: [Self; 4], rows: &mut [[$Lane; N]], at: usize) {
+                let rows = &mut rows[..8];
+                let [a, b, c, d] = transpose([a.ps(), b.ps(), c.ps(), d.ps()]);
+                for (i, row) in [a, b, c, d].into_iter().enumerate() {
+                    let (low, high) = Self::of_ps(row).halves();
+                    low.store(&mut rows[i][at..]);
+                    high.store(&mut rows[i + 4][at..]);
+                }
+            }
         }
 
         impl Halves for $V {
@@ -132,24 +157,21 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn load_rows4(rows: &[[$Lane; 4]]) -> [Self; 4] {
-                let rows = &rows[..8];
-                let [a, b, c, d] = transpose([
-                    join(<$Half>::load(&rows[0]).ps(), <$Half>::load(&rows[4]).ps()),
-                    join(<$Half>::load(&rows[1]).ps(), <$Half>::load(&rows[5]).ps()),
-                    join(<$Half>::load(&rows[2]).ps(), <$Half>::load(&rows[6]).ps()),
-                    join(<$Half>::load(&rows[3]).ps(), <$Half>::load(&rows[7]).ps()),
-                ]);
-                [Self::of_ps(a), Self::of_ps(b), Self::of_ps(c), Self::of_ps(d)]
+                Self::load_fields(rows, 0)
             }
             #[inline(always)]
-            fn store_rows4([a, b, c, d]: [Self; 4], rows: &mut [[$Lane; 4]]) {
-                let rows = &mut rows[..8];
-                let [a, b, c, d] = transpose([a.ps(), b.ps(), c.ps(), d.ps()]);
-                for (i, row) in [a, b, c, d].into_iter().enumerate() {
-                    let (low, high) = Self::of_ps(row).halves();
-                    low.store(&mut rows[i]);
-                    high.store(&mut rows[i + 4]);
-                }
+            fn store_rows4(columns: [Self; 4], rows: &mut [[$Lane; 4]]) {
+                Self::store_fields(columns, rows, 0);
+            }
+            #[inline(always)]
+            fn load_rows8(rows: &[[$Lane; 8]]) -> [Self; 8] {
+                let ([a, b, c, d], [e, f, g, h]) = (Self::load_fields(rows, 0), Self::load_fields(rows, 4));
+                [a, b, c, d, e, f, g, h]
+            }
+            #[inline(always)]
+            fn store_rows8([a, b, c, d, e, f, g, h]: [Self; 8], rows: &mut [[$Lane; 8]]) {
+                Self::store_fields([a, b, c, d], rows, 0);
+                Self::store_fields([e, f, g, h], rows, 4);
             }
             #[inline(always)]
             fn select(mask: Bool8, on_true: Self, on_false: Self) -> Self {

@@ -98,6 +98,10 @@ impl Float for Float16 {
         self.mul_add(b, c)
     }
     #[inline(always)]
+    fn product_error(self, b: Self, product: Self) -> Self {
+        self.mul_sub(b, product)
+    }
+    #[inline(always)]
     fn neg_mul_sub(self, b: Self, c: Self) -> Self {
         Self::new(intrinsics!(_mm512_fnmsub_ps(self.0, b.0, c.0)))
     }

@@ -36,6 +36,34 @@ macro_rules! vector {
                 let (low, high) = intrinsics!((_mm512_castps512_ps256(x), _mm512_extractf32x8_ps::<1>(x)));
                 (<$Half>::of_ps(low), <$Half>::of_ps(high))
             }
+
+            /// Fields `at` to `at + 3` of sixteen rows.
+            #[inline(always)]
+            fn load_fields<const N: usize>(rows: &[[$Lane; N]], at: usize) -> [Self; 4] {
+                let rows = &rows[..16];
+                let [a, b, c, d] = transpose([
+                    join(<$Quarter>::load(&rows[0][at..]).ps(), <$Quarter>::load(&rows[4][at..]).ps(), <$Quarter>::load(&rows[8][at..]).ps(), <$Quarter>::load(&rows[12][at..]).ps()),
+                    join(<$Quarter>::load(&rows[1][at..]).ps(), <$Quarter>::load(&rows[5][at..]).ps(), <$Quarter>::load(&rows[9][at..]).ps(), <$Quarter>::load(&rows[13][at..]).ps()),
+                    join(<$Quarter>::load(&rows[2][at..]).ps(), <$Quarter>::load(&rows[6][at..]).ps(), <$Quarter>::load(&rows[10][at..]).ps(), <$Quarter>::load(&rows[14][at..]).ps()),
+                    join(<$Quarter>::load(&rows[3][at..]).ps(), <$Quarter>::load(&rows[7][at..]).ps(), <$Quarter>::load(&rows[11][at..]).ps(), <$Quarter>::load(&rows[15][at..]).ps()),
+                ]);
+                [Self::of_ps(a), Self::of_ps(b), Self::of_ps(c), Self::of_ps(d)]
+            }
+
+            /// The inverse.
+            #[inline(always)]
+            fn store_fields<const N: usize>([a, b, c, d]: [Self; 4], rows: &mut [[$Lane; N]], at: usize) {
+                let rows = &mut rows[..16];
+                let [a, b, c, d] = transpose([a.ps(), b.ps(), c.ps(), d.ps()]);
+                for (i, row) in [a, b, c, d].into_iter().enumerate() {
+                    let (low, high) = Self::of_ps(row).halves();
+                    let ((a, b), (c, d)) = (low.halves(), high.halves());
+                    a.store(&mut rows[i][at..]);
+                    b.store(&mut rows[i + 4][at..]);
+                    c.store(&mut rows[i + 8][at..]);
+                    d.store(&mut rows[i + 12][at..]);
+                }
+            }
         }
 
         impl Halves for $V {
@@ -145,27 +173,21 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn load_rows4(rows: &[[$Lane; 4]]) -> [Self; 4] {
-                let rows = &rows[..16];
-                let [a, b, c, d] = transpose([
-                    join(<$Quarter>::load(&rows[0]).ps(), <$Quarter>::load(&rows[4]).ps(), <$Quarter>::load(&rows[8]).ps(), <$Quarter>::load(&rows[12]).ps()),
-                    join(<$Quarter>::load(&rows[1]).ps(), <$Quarter>::load(&rows[5]).ps(), <$Quarter>::load(&rows[9]).ps(), <$Quarter>::load(&rows[13]).ps()),
-                    join(<$Quarter>::load(&rows[2]).ps(), <$Quarter>::load(&rows[6]).ps(), <$Quarter>::load(&rows[10]).ps(), <$Quarter>::load(&rows[14]).ps()),
-                    join(<$Quarter>::load(&rows[3]).ps(), <$Quarter>::load(&rows[7]).ps(), <$Quarter>::load(&rows[11]).ps(), <$Quarter>::load(&rows[15]).ps()),
-                ]);
-                [Self::of_ps(a), Self::of_ps(b), Self::of_ps(c), Self::of_ps(d)]
+                Self::load_fields(rows, 0)
             }
             #[inline(always)]
-            fn store_rows4([a, b, c, d]: [Self; 4], rows: &mut [[$Lane; 4]]) {
-                let rows = &mut rows[..16];
-                let [a, b, c, d] = transpose([a.ps(), b.ps(), c.ps(), d.ps()]);
-                for (i, row) in [a, b, c, d].into_iter().enumerate() {
-                    let (low, high) = Self::of_ps(row).halves();
-                    let ((a, b), (c, d)) = (low.halves(), high.halves());
-                    a.store(&mut rows[i]);
-                    b.store(&mut rows[i + 4]);
-                    c.store(&mut rows[i + 8]);
-                    d.store(&mut rows[i + 12]);
-                }
+            fn store_rows4(columns: [Self; 4], rows: &mut [[$Lane; 4]]) {
+                Self::store_fields(columns, rows, 0);
+            }
+            #[inline(always)]
+            fn load_rows8(rows: &[[$Lane; 8]]) -> [Self; 8] {
+                let ([a, b, c, d], [e, f, g, h]) = (Self::load_fields(rows, 0), Self::load_fields(rows, 4));
+                [a, b, c, d, e, f, g, h]
+            }
+            #[inline(always)]
+            fn store_rows8([a, b, c, d, e, f, g, h]: [Self; 8], rows: &mut [[$Lane; 8]]) {
+                Self::store_fields([a, b, c, d], rows, 0);
+                Self::store_fields([e, f, g, h], rows, 4);
             }
             #[inline(always)]
             fn select(mask: Bool16, on_true: Self, on_false: Self) -> Self {
