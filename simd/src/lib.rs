@@ -35,7 +35,7 @@
 //! - [`Level`]: an instruction set that this CPU has. [`Level::best`], [`Level::from_env`] (`SIMD_LEVEL`), [`Level::available`].
 //! - [`kernel!`], [`dispatch!`]: run code at a level; both are sugar for [`Kernel`] and [`Level::run`].
 //! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Mask`]: what they can do;
-//!   [`operations`]: all of it in one table.
+//!   [`Narrow`]: what those of 16- and 8-bit lanes can; [`operations`]: all of it in one table.
 //! - [`Block`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
 //!
 //! # Inlining
@@ -71,4 +71,5 @@ mod vector;
 pub use block::Block;
 pub use level::{Isa, Kernel, Level, LevelError};
 pub use prefetch::prefetch;
+pub use vector::{Char, Narrow, Short, UChar, UShort};
 pub use vector::{Float, Halves, Int, Integer, Lane, Mask, SetLanes, Simd, Uint, Vector};

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
-const TRAITS: [&str; 4] = [
+const TRAITS: [&str; 5] = [
     include_str!("../src/vector/mask.rs"),
     include_str!("../src/vector/lanes.rs"),
     include_str!("../src/vector/float.rs"),
     include_str!("../src/vector/integer.rs"),
+    include_str!("../src/vector/narrow.rs"),
 ];
 const TABLE: &str = include_str!("../src/vector/operations.md");
 

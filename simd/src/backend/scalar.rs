@@ -33,6 +33,7 @@ macro_rules! emulation {
             type Uint16 = Pair<Self::Uint8>;
             type Bool16 = Pair<Self::Bool8>;
             type Float = Self::Float4;
+            $crate::backend::narrow_types!();
         }
 
         // Like the functions of the other levels, which cannot be inlined.
