@@ -9,6 +9,7 @@ mod lanes;
 mod mask;
 mod math;
 mod memory;
+mod narrow;
 mod values;
 
 use harness::{Width, everywhere};
