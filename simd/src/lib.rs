@@ -38,7 +38,7 @@
 //! - [`kernel!`], [`dispatch!`]: run code at a level; both are sugar for [`Kernel`] and [`Level::run`].
 //! - [`native`]: the types of the compilation target, without dispatch.
 //! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Double`], [`Mask`]: what they can do;
-//!   [`operations`]: all of it in one table.
+//!   [`Narrow`]: what those of 16- and 8-bit lanes can; [`operations`]: all of it in one table.
 //! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
 //! - [`coming_from`]: the idioms of other libraries.
 //! - [`interop`]: conversions for bytemuck, glam, wide and pulp, each a feature.
@@ -120,4 +120,5 @@ pub use block::Block;
 pub use level::LevelError;
 pub use level::{Isa, Kernel, Level};
 pub use prefetch::prefetch;
+pub use vector::{Char, Narrow, Short, UChar, UShort};
 pub use vector::{Double, Float, Halves, Int, Integer, Lane, Mask, SetLanes, Simd, Uint, Vector};

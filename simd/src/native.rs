@@ -158,4 +158,20 @@ types! {
     Double8
     /// `f32` in the width of the registers.
     Float
+    /// Eight `i16`.
+    Short8
+    /// Eight `u16`.
+    UShort8
+    /// Sixteen `i16`.
+    Short16
+    /// Sixteen `u16`.
+    UShort16
+    /// Sixteen `i8`.
+    Char16
+    /// Sixteen `u8`.
+    UChar16
+    /// Thirty-two `i8`.
+    Char32
+    /// Thirty-two `u8`.
+    UChar32
 }

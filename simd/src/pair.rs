@@ -7,6 +7,8 @@ use crate::{Block, Double, Float, Halves, Int, Integer, Mask, Uint, Vector};
 use std::fmt;
 use std::ops::*;
 
+mod narrow;
+
 /// The lower and the upper half of a vector of twice the lanes.
 #[derive(Clone, Copy, Default, PartialEq)]
 pub struct Pair<V>(pub(crate) V, pub(crate) V);

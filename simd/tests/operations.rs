@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
-const TRAITS: [&str; 5] = [
+const TRAITS: [&str; 6] = [
     include_str!("../src/vector/mask.rs"),
     include_str!("../src/vector/lanes.rs"),
     include_str!("../src/vector/float.rs"),
     include_str!("../src/vector/double.rs"),
     include_str!("../src/vector/integer.rs"),
+    include_str!("../src/vector/narrow.rs"),
 ];
 const TABLE: &str = include_str!("../src/vector/operations.md");
 

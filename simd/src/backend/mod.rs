@@ -1,5 +1,5 @@
 //! One folder per instruction set, the same files in each: `mod` (the set, its registers and masks), `lanes` (what vectors of all
-//! lane types share), `float`, `integer`. Emulation is a file: [`scalar`], and [`serial`] made of it.
+//! lane types share), `float`, `integer`, `narrow` (16- and 8-bit lanes). Emulation is a file: [`scalar`], and [`serial`] made of it.
 //!
 //! # Why this is sound
 //!
@@ -32,6 +32,7 @@ pub(crate) mod soft;
 pub(crate) mod avx2;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod avx512;
+mod narrow;
 #[cfg(target_arch = "aarch64")]
 pub(crate) mod neon;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -50,6 +51,11 @@ macro_rules! intrinsics {
     };
 }
 use intrinsics;
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+use narrow::mul_high_by_widening;
+#[cfg(not(target_arch = "wasm32"))]
+use narrow::narrow_basics;
+use narrow::narrow_types;
 
 /// Binary operators with their assigning forms, each one intrinsic on the inner registers; first the type's generics.
 macro_rules! operators {

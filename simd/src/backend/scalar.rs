@@ -37,6 +37,7 @@ macro_rules! emulation {
             type Double4 = Pair<Self::Double2>;
             type Double8 = Pair<Self::Double4>;
             type Float = Self::Float4;
+            $crate::backend::narrow_types!();
         }
 
         // Like the functions of the other levels, which cannot be inlined.

@@ -171,7 +171,8 @@ mod tests {
     same_bits_as_std!(single: f32, u32);
     same_bits_as_std!(double: f64, u64);
 
-    /// Against the standard library's.
+    /// Against the standard library's (where it is right: the C library of MinGW rounds twice).
+    #[cfg(not(all(windows, target_env = "gnu")))]
     #[test]
     fn fused() {
         let mut state = 1_u32;

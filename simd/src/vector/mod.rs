@@ -1,4 +1,4 @@
-//! The operations: the traits [`Simd`], [`Vector`], [`Float`], [`Int`], [`Uint`] and [`Mask`].
+//! The operations: the traits [`Simd`], [`Vector`], [`Float`], [`Int`], [`Uint`], [`Narrow`] and [`Mask`].
 //!
 //! Every operation returns the same bits on every backend and at every width, with two exceptions that say so: the *relaxed*
 //! `mul_add` family, which is fused where the hardware has it, and which of the many NaNs a NaN result is.
@@ -14,6 +14,7 @@ mod float;
 pub(crate) mod integer;
 mod lanes;
 mod mask;
+pub(crate) mod narrow;
 
 pub use double::Double;
 pub use float::Float;
@@ -21,6 +22,7 @@ pub use integer::{Int, Integer, Uint};
 pub(crate) use lanes::check_masked;
 pub use lanes::{Halves, Vector};
 pub use mask::{Mask, SetLanes};
+pub use narrow::{Char, Narrow, Short, UChar, UShort};
 
 pub(crate) mod sealed {
     /// Keeps the traits of this crate implementable by its backends alone.
@@ -92,9 +94,35 @@ pub trait Simd: Sealed + Copy + Debug + Send + Sync + 'static {
 
     /// `f32` in the width of this level's registers.
     type Float: Float;
+
+    /// Eight `i16`.
+    #[doc(alias("short8", "i16x8", "vshort8"))]
+    type Short8: Short<Unsigned = Self::UShort8, Wide = Self::Int4>;
+    /// Eight `u16`.
+    #[doc(alias("ushort8", "u16x8", "vushort8"))]
+    type UShort8: UShort<Mask = <Self::Short8 as Narrow>::Mask, Signed = Self::Short8, Wide = Self::Uint4>;
+    /// Sixteen `i16`.
+    #[doc(alias("short16", "i16x16", "vshort16"))]
+    type Short16: Short<Unsigned = Self::UShort16, Wide = Self::Int8>;
+    /// Sixteen `u16`.
+    #[doc(alias("ushort16", "u16x16", "vushort16"))]
+    type UShort16: UShort<Mask = <Self::Short16 as Narrow>::Mask, Signed = Self::Short16, Wide = Self::Uint8>;
+
+    /// Sixteen `i8`.
+    #[doc(alias("char16", "i8x16", "vchar16"))]
+    type Char16: Char<Unsigned = Self::UChar16, Wide = Self::Short8>;
+    /// Sixteen `u8`.
+    #[doc(alias("uchar16", "u8x16", "vuchar16"))]
+    type UChar16: UChar<Mask = <Self::Char16 as Narrow>::Mask, Signed = Self::Char16, Wide = Self::UShort8>;
+    /// Thirty-two `i8`.
+    #[doc(alias("char32", "i8x32", "vchar32"))]
+    type Char32: Char<Unsigned = Self::UChar32, Wide = Self::Short16>;
+    /// Thirty-two `u8`.
+    #[doc(alias("uchar32", "u8x32", "vuchar32"))]
+    type UChar32: UChar<Mask = <Self::Char32 as Narrow>::Mask, Signed = Self::Char32, Wide = Self::UShort16>;
 }
 
-/// The type of one lane: `f32`, `i32`, `u32` or `f64`.
+/// The type of one lane: `f32`, `i32`, `u32` or `f64`, and `i16`, `u16`, `i8`, `u8`.
 pub trait Lane: Sealed + Copy + Debug + Default + PartialEq + PartialOrd + Send + Sync + 'static {
     /// Not smaller than any other value (infinity for floats).
     const LARGEST: Self;

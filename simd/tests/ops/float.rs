@@ -37,9 +37,9 @@ operations! {
     }
 
     neg_mul_sub(a: float, b: float, c: float) -> float { a.neg_mul_sub(b, c) } is relaxed(fused) {
-        if fused { (-a).mul_add(b, -c) } else { -(a * b) - c }
+        if fused { rounded_once(-a, b, -c) } else { -(a * b) - c }
     }
-    mul_add_exact(a: float, b: float, c: float) -> float { a.mul_add_exact(b, c) } is { a.mul_add(b, c) }
+    mul_add_exact(a: float, b: float, c: float) -> float { a.mul_add_exact(b, c) } is { rounded_once(a, b, c) }
 
     eq(a: float, b: float) -> mask { a.eq(b) } is { a == b }
     ne(a: float, b: float) -> mask { a.ne(b) } is { a != b }

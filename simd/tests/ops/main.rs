@@ -13,6 +13,7 @@ mod math;
 mod memory;
 #[cfg(target_family = "wasm")]
 mod message;
+mod narrow;
 mod values;
 
 use harness::{Width, everywhere};

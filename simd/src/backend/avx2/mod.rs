@@ -2,7 +2,7 @@
 
 use super::sse::{self, Sse, StreamFence};
 use super::tables::COMPRESS8;
-use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
+use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
 use crate::pair::Pair;
 use crate::vector::check_masked;
 use crate::vector::sealed::{List, Sealed};
@@ -17,6 +17,9 @@ use std::ops::*;
 mod float;
 mod integer;
 mod lanes;
+mod narrow;
+
+pub(super) use narrow::{Char32, Short16, UChar32, UShort16};
 
 // ---- The set ----
 
@@ -47,6 +50,8 @@ impl Simd for Avx2 {
     type Double4 = Pair<Self::Double2>;
     type Double8 = Pair<Self::Double4>;
     type Float = Float8;
+    narrow_types!(sse::Short8<Self>, sse::UShort8<Self>, sse::Char16<Self>, sse::UChar16<Self>;
+        Short16, UShort16, Char32, UChar32);
 }
 
 /// A vector type over its register, and its way to and from the register that memory operations work with.

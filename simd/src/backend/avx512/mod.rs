@@ -2,7 +2,7 @@
 
 use super::avx2::{self, Avx2};
 use super::sse::{self, StreamFence};
-use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
+use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
 use crate::pair::Pair;
 use crate::vector::check_masked;
 use crate::vector::sealed::{List, Sealed};
@@ -43,6 +43,8 @@ impl Simd for Avx512 {
     type Double4 = Pair<Self::Double2>;
     type Double8 = Pair<Self::Double4>;
     type Float = Float16;
+    narrow_types!(sse::Short8<Avx2>, sse::UShort8<Avx2>, sse::Char16<Avx2>, sse::UChar16<Avx2>;
+        avx2::Short16, avx2::UShort16, avx2::Char32, avx2::UChar32);
 }
 
 /// A vector type over its register, and its way to and from the register that memory operations work with.

@@ -1,7 +1,7 @@
 //! aarch64, four lanes: Advanced SIMD.
 
 use super::tables::COMPRESS4;
-use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
+use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
 use crate::pair::Pair;
 use crate::vector::sealed::{List, Sealed};
 use crate::{Block, Float, Int, Integer, Isa, Level, Mask, Simd, Uint, Vector};
@@ -12,6 +12,7 @@ use std::ops::*;
 mod float;
 mod integer;
 mod lanes;
+mod narrow;
 
 // ---- The set ----
 
@@ -37,6 +38,7 @@ impl Simd for Neon {
     type Double4 = Pair<Self::Double2>;
     type Double8 = Pair<Self::Double4>;
     type Float = Float4;
+    narrow_types!(narrow::Short8, narrow::UShort8, narrow::Char16, narrow::UChar16);
 }
 
 /// A type over its register.

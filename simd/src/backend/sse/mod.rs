@@ -1,7 +1,7 @@
 //! x86, four lanes: SSE2, SSE4.2, and the four-lane types of AVX2 and AVX-512, told apart by a marker.
 
 use super::tables::COMPRESS4;
-use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
+use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
 use crate::pair::Pair;
 use crate::vector::integer::shift_in_steps;
 use crate::vector::sealed::{List, Sealed};
@@ -17,9 +17,11 @@ use std::ops::*;
 mod float;
 mod integer;
 mod lanes;
+mod narrow;
 
 pub(super) use integer::shift_count;
 pub(super) use lanes::StreamFence;
+pub(super) use narrow::{Char16, Short8, UChar16, UShort8};
 
 // ---- The set ----
 
@@ -68,6 +70,7 @@ macro_rules! four_lanes_native {
             type Double4 = Pair<Self::Double2>;
             type Double8 = Pair<Self::Double4>;
             type Float = Self::Float4;
+            narrow_types!(Short8<Self>, UShort8<Self>, Char16<Self>, UChar16<Self>);
         }
     )*};
 }

@@ -5,7 +5,7 @@
 #![allow(unused_unsafe, reason = "of macros that other backends share, whose instructions are unsafe to call")]
 
 use super::tables::COMPRESS4;
-use super::{check_bounds, intrinsics, list_lanes, mask_basics, operators, vector_basics};
+use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
 use crate::pair::Pair;
 use crate::vector::sealed::{List, Sealed};
 use crate::{Block, Float, Int, Integer, Isa, Kernel, Level, Mask, Simd, Uint, Vector};
@@ -79,6 +79,7 @@ macro_rules! four_lanes_native {
             type Double4 = Pair<Self::Double2>;
             type Double8 = Pair<Self::Double4>;
             type Float = Self::Float4;
+            narrow_types!();
         }
     };
 }
