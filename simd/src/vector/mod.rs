@@ -1,7 +1,8 @@
 //! The operations: the traits [`Simd`], [`Vector`], [`Float`], [`Int`], [`Uint`], [`Narrow`] and [`Mask`].
 //!
-//! Every operation returns the same bits on every backend and at every width, with two exceptions that say so: the *relaxed*
-//! `mul_add` family, which is fused where the hardware has it, and which of the many NaNs a NaN result is.
+//! Every operation returns the same bits on every backend and at every width, with exceptions that say so: the *relaxed*
+//! `mul_add` family, which is fused where the hardware has it, `product_error` where something under- or overflows, and which
+//! of the many NaNs a NaN result is.
 //! No backend flushes denormals to zero or fuses what is written apart: `a * b + c` rounds twice.
 //!
 //! Lane 0 is the first in memory. Integer arithmetic wraps.
