@@ -1,8 +1,5 @@
 //! 16- and 8-bit lanes: what the backends share, and emulation.
 
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-use crate::Narrow;
-
 mod emulation;
 
 pub use emulation::Lanes;
@@ -54,9 +51,9 @@ macro_rules! narrow_basics {
 pub(super) use narrow_basics;
 
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-/// `Narrow::mul_high` of bytes: products of twice the bits, and the upper halves of those.
+/// [`Narrow::mul_high`](crate::Narrow::mul_high) of bytes: products of twice the bits, and the upper halves of those.
 #[inline(always)]
-pub(super) fn mul_high_by_widening<V: Narrow<Wide: Narrow>>(a: V, b: V) -> V {
+pub(super) fn mul_high_by_widening<V: crate::Narrow<Wide: crate::Narrow>>(a: V, b: V) -> V {
     let ((a0, a1), (b0, b1)) = (a.widen(), b.widen());
     V::narrow((a0 * b0) >> 8, (a1 * b1) >> 8)
 }
