@@ -6,7 +6,7 @@ use crate::values::Random;
 use simd::{Block, Level, Mask, Vector};
 
 /// Whether it panics. Where panics abort, nothing is tried and the answer is yes.
-fn panics(f: impl FnOnce()) -> bool {
+pub fn panics(f: impl FnOnce()) -> bool {
     cfg!(not(panic = "unwind")) || std::panic::catch_unwind(std::panic::AssertUnwindSafe(f)).is_err()
 }
 
