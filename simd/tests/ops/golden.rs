@@ -3,8 +3,8 @@
 //! They are in `golden.txt`. After a change of tests or operations, write them anew and look at what changed:
 //!
 //! ```text
-//! rm -f /tmp/golden; SIMD_GOLDEN=/tmp/golden cargo test -p simd --test ops
-//! LC_ALL=C sort -u /tmp/golden > simd/tests/ops/golden.txt
+//! SIMD_GOLDEN=$PWD/target/golden cargo test -p simd --test ops
+//! LC_ALL=C sort -u target/golden > simd/tests/ops/golden.txt; rm target/golden
 //! ```
 
 use simd::Level;
