@@ -1,9 +1,9 @@
-//! Prints what the benchmark `simd_peers` measured as a table in Markdown: kernels and contestants, medians, and how many times
-//! as long as the intrinsics of that level it took. With `--crates`, also the lines of each crate and the seconds of a clean
-//! release build with one job.
+//! Prints what the benchmark `simd_peers` measured as a table in Markdown: kernels and contestants, the medians over the rounds
+//! that `bench/simd_peers.sh` ran, and how many times as long as the intrinsics of that level it took. With `--crates`, also the
+//! lines of each crate and the seconds of a clean release build with one job.
 //!
 //! ```text
-//! cargo run --release -p bench --bin simd-peers-table [-- --crates]
+//! bench/simd_peers.sh
 //! ```
 
 use std::collections::BTreeMap;
@@ -76,18 +76,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Nanoseconds, by kernel, contestant and level.
+/// Nanoseconds, by kernel, contestant and level: the median over the rounds.
 fn medians(criterion: &Path) -> Result<BTreeMap<[String; 3], f64>, Box<dyn Error>> {
+    let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let mut medians = BTreeMap::new();
     for (kernel, _) in KERNELS {
         for who in directories(&criterion.join(kernel))? {
             for level in directories(&who)? {
-                let Ok(estimates) = fs::read_to_string(level.join("new/estimates.json")) else { continue };
-                let estimates: serde_json::Value = serde_json::from_str(&estimates)?;
-                let ns = estimates["median"]["point_estimate"].as_f64().ok_or("no median in estimates.json")?;
-                let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
-                let key = [Some(kernel.to_owned()), name(&who), name(&level)].map(Option::unwrap_or_default);
-                medians.insert(key, ns);
+                let mut rounds = Vec::new();
+                for round in directories(&level)?.into_iter().filter(|path| name(path).starts_with("round")) {
+                    let estimates = fs::read_to_string(round.join("estimates.json"))?;
+                    let estimates: serde_json::Value = serde_json::from_str(&estimates)?;
+                    rounds.push(estimates["median"]["point_estimate"].as_f64().ok_or("no median in estimates.json")?);
+                }
+                rounds.sort_by(f64::total_cmp);
+                if let Some(&median) = rounds.get(rounds.len() / 2) {
+                    medians.insert([kernel.to_owned(), name(&who), name(&level)], median);
+                }
             }
         }
     }
@@ -96,7 +101,7 @@ fn medians(criterion: &Path) -> Result<BTreeMap<[String; 3], f64>, Box<dyn Error
 
 fn directories(path: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
     let entries = fs::read_dir(path)
-        .map_err(|error| format!("{}: {error}; run `cargo bench -p bench --bench simd_peers` first", path.display()))?;
+        .map_err(|error| format!("{}: {error}; run bench/simd_peers.sh first", path.display()))?;
     let paths: Vec<_> = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>()?;
     Ok(paths.into_iter().filter(|path| path.is_dir()).collect())
 }

@@ -2,15 +2,13 @@
 //! kernels, one file each, the contestants as functions in it.
 //!
 //! ```text
-//! cargo bench -p bench --bench simd_peers
-//! RUSTFLAGS='-C target-cpu=x86-64-v3' cargo bench -p bench --bench simd_peers --target-dir target/v3 -- /wide/
-//! RUSTFLAGS='-C target-cpu=x86-64-v4' cargo bench -p bench --bench simd_peers --target-dir target/v4 -- /wide/
-//! cargo run --release -p bench --bin simd-peers-table
+//! bench/simd_peers.sh                          # all contestants in rounds, and the table
+//! cargo bench -p bench --bench simd_peers      # one round, with Criterion's plots in target/criterion
 //! ```
 //!
 //! - `simd`, `pulp` and `fearless_simd` are dispatched at run time: one row per level.
 //! - `wide` has no dispatch: it is what the build's target features make it. In a plain build that is SSE2, and the row says so;
-//!   the second and third commands add its rows with AVX2 and AVX-512.
+//!   the script adds its rows from builds for AVX2 and, where the machine has it, AVX-512.
 //! - `intrinsics` are the limit: `std::arch`, without checks at run time.
 //! - `plain` is Rust without any of them, compiled for the level.
 //!

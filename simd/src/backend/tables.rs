@@ -22,16 +22,17 @@ pub(super) static COMPRESS4: [[u8; 16]; 16] = {
     table
 };
 
-/// By bit mask: the lanes that are on, one after the other; then -1, which stands for a zero.
+/// By bit mask: the lanes that are on, one after the other; then -1, which stands for a zero. As wide as the lanes themselves:
+/// eight kilobytes, but no conversion on the way.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-pub(super) static COMPRESS8: [[i8; 8]; 256] = {
-    let mut table = [[-1; 8]; 256];
+pub(super) static COMPRESS8: [Lanes8; 256] = {
+    let mut table = [Lanes8([-1; 8]); 256];
     let mut mask = 0;
     while mask < 256 {
         let (mut lane, mut n) = (0, 0);
         while lane < 8 {
             if mask >> lane & 1 != 0 {
-                table[mask][n] = lane;
+                table[mask].0[n] = lane;
                 n += 1;
             }
             lane += 1;
@@ -40,3 +41,9 @@ pub(super) static COMPRESS8: [[i8; 8]; 256] = {
     }
     table
 };
+
+/// Of a register of 32 bytes, aligned for it.
+#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+#[derive(Clone, Copy)]
+#[repr(C, align(32))]
+pub(super) struct Lanes8(pub(super) [i32; 8]);

@@ -203,9 +203,9 @@ macro_rules! vector {
             }
             #[inline(always)]
             fn compress(self, mask: Bool8) -> Self {
-                let lanes: *const [i8; 8] = &COMPRESS8[mask.bitmask() as usize % 256];
-                // SAFETY: eight bytes are there to read.
-                let lanes = Uint8(unsafe { _mm256_cvtepi8_epi32(_mm_loadl_epi64(lanes.cast())) });
+                let lanes: *const Lanes8 = &COMPRESS8[mask.bitmask() as usize % 256];
+                // SAFETY: 32 bytes are there to read, aligned to as many.
+                let lanes = Uint8(unsafe { _mm256_load_si256(lanes.cast()) });
                 let packed = self.lookup(lanes).ps();
                 Self::of_ps(intrinsics!(_mm256_blendv_ps(packed, _mm256_setzero_ps(), lanes.ps())))
             }

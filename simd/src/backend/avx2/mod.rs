@@ -1,7 +1,7 @@
 //! AVX2 and FMA, eight lanes. Four lanes are [`sse`](super::sse)'s.
 
 use super::sse::{self, Sse, StreamFence};
-use super::tables::COMPRESS8;
+use super::tables::{COMPRESS8, Lanes8};
 use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
 use crate::pair::Pair;
 use crate::vector::check_masked;
