@@ -95,7 +95,11 @@
 #![cfg_attr(not(any(feature = "std", test)), no_std)]
 #![cfg_attr(
     all(target_arch = "powerpc64", feature = "vsx"),
-    feature(portable_simd, powerpc_target_feature, stdarch_powerpc, stdarch_powerpc_feature_detection)
+    feature(portable_simd, powerpc_target_feature, stdarch_powerpc)
+)]
+#![cfg_attr(
+    all(target_arch = "powerpc64", feature = "vsx", feature = "std"),
+    feature(stdarch_powerpc_feature_detection)
 )]
 
 #[cfg(feature = "alloc")]
