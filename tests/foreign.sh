@@ -10,7 +10,8 @@ usage: tests/foreign.sh TARGET [cargo test arguments]
   aarch64                              NEON; on qemu's default CPU, then on a Cortex-A53
   i686                                 32-bit x86
   i586                                 32-bit x86 without SSE2, on a Pentium III: all but arithmetic of floats
-  armv7 ppc64le riscv64                emulation alone
+  armv7 riscv64                        emulation alone
+  ppc64le                              VSX, by nightly Rust's intrinsics
   wasm wasm-relaxed wasm-scalar        WebAssembly with SIMD, with relaxed SIMD, and emulation alone; on node
   windows                              x86-64, on wine
   darwin                               macOS on ARM; type-checked, not run
@@ -34,6 +35,8 @@ gnu= arch= qemu=
 # `from_env` starts its own program again, which an emulated process cannot.
 filter=(--skip from_env)
 what=()
+# options: what every call of cargo gets.
+options=()
 case ${1:-} in
     aarch64)
         triple=aarch64-unknown-linux-gnu gnu=aarch64-linux-gnu arch=arm64 qemu=aarch64
@@ -50,7 +53,11 @@ case ${1:-} in
         what=(--test level --test ops)
         filter+=(--skip float:: --skip double:: --skip estimates:: --skip math:: --skip lanes::) ;;
     armv7) triple=armv7-unknown-linux-gnueabihf gnu=arm-linux-gnueabihf arch=armhf qemu=arm ;;
-    ppc64le) triple=powerpc64le-unknown-linux-gnu gnu=powerpc64le-linux-gnu arch=ppc64el qemu=ppc64le ;;
+    ppc64le)
+        triple=powerpc64le-unknown-linux-gnu gnu=powerpc64le-linux-gnu arch=ppc64el qemu=ppc64le
+        levels=scalar,vsx exact=true options=(--features simd/vsx)
+        # The intrinsics are unstable; this makes any compiler take them.
+        export RUSTC_BOOTSTRAP=1 ;;
     riscv64) triple=riscv64gc-unknown-linux-gnu gnu=riscv64-linux-gnu arch=riscv64 qemu=riscv64 ;;
     wasm) triple=wasm32-unknown-unknown levels=scalar,wasm features=+simd128 ;;
     wasm-relaxed) triple=wasm32-unknown-unknown levels=scalar,wasm,wasm-relaxed features=+simd128,+relaxed-simd ;;
@@ -113,6 +120,7 @@ if [ "$triple" = wasm32-unknown-unknown ]; then
     run+=(--config "target.$triple.runner = ['node', '--no-warnings', '$flag', '$PWD/tests/wasm.mjs']")
 fi
 
+run+=("${options[@]}")
 export SIMD_TEST_LEVELS=${SIMD_TEST_LEVELS:-$levels}
 for cpu in "${QEMU_CPU:-${cpus[@]}}"; do
     if [ "$cpu" = default ]; then unset QEMU_CPU; else export QEMU_CPU=$cpu; fi

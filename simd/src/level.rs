@@ -27,6 +27,8 @@ pub enum Isa {
     Avx512,
     /// ARM: Advanced SIMD, four lanes.
     Neon,
+    /// powerpc64le: AltiVec and VSX of POWER8, four lanes. With the cargo feature `vsx`, which needs nightly Rust.
+    Vsx,
     /// WebAssembly: SIMD, four lanes. Not detected but compiled in: `-C target-feature=+simd128`.
     Wasm,
     /// WebAssembly: relaxed SIMD, four lanes: `-C target-feature=+relaxed-simd`. Whether the relaxed operations are fused there
@@ -37,7 +39,7 @@ pub enum Isa {
 
 impl Isa {
     /// All of them, slowest first.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Serial,
         Self::Scalar,
         Self::Sse2,
@@ -45,6 +47,7 @@ impl Isa {
         Self::Avx2,
         Self::Avx512,
         Self::Neon,
+        Self::Vsx,
         Self::Wasm,
         Self::WasmRelaxed,
     ];
@@ -60,6 +63,7 @@ impl Isa {
             Self::Avx2 => "avx2",
             Self::Avx512 => "avx512",
             Self::Neon => "neon",
+            Self::Vsx => "vsx",
             Self::Wasm => "wasm",
             Self::WasmRelaxed => "wasm-relaxed",
         }
@@ -82,6 +86,7 @@ impl Isa {
             Self::Sse42 => cfg!(any(feature = "sse4_2", target_feature = "sse4.2")),
             Self::Avx2 => cfg!(any(feature = "avx2", target_feature = "avx2")),
             Self::Avx512 => cfg!(any(feature = "avx512", target_feature = "avx512f")),
+            Self::Vsx => cfg!(feature = "vsx"),
             _ => true,
         }
     }
@@ -120,6 +125,12 @@ impl Isa {
             }
             #[cfg(target_arch = "aarch64")]
             Self::Neon => cpu_has!(is_aarch64_feature_detected: "neon"),
+            // Of the two byte orders the one that is tested.
+            #[cfg(all(target_arch = "powerpc64", feature = "vsx"))]
+            Self::Vsx => {
+                cfg!(target_endian = "little")
+                    && cpu_has!(is_powerpc64_feature_detected: "altivec" "vsx" "power8-altivec" "power8-vector")
+            }
             // An engine rejects a module with instructions it lacks as a whole: where this runs, it has them.
             #[cfg(target_arch = "wasm32")]
             Self::Wasm => cfg!(target_feature = "simd128"),

@@ -50,6 +50,7 @@
 //! - `alloc` (part of `std`): [`AlignedVec`], levels by name, [`LevelError`].
 //! - `sse4_2`, `avx2`, `avx512` (default): the x86 levels above the baseline. A level that is left out is unavailable, unless the
 //!   whole program is compiled for it.
+//! - `vsx`: the level of powerpc64le, whose instructions nightly Rust alone knows; nothing on other architectures.
 //! - `bytemuck`, `glam`, `wide`, `pulp`: conversions, see [`interop`].
 //!
 //! # Which way, and what it costs
@@ -92,6 +93,14 @@
 //! ```
 
 #![cfg_attr(not(any(feature = "std", test)), no_std)]
+#![cfg_attr(
+    all(target_arch = "powerpc64", feature = "vsx"),
+    feature(portable_simd, powerpc_target_feature, stdarch_powerpc)
+)]
+#![cfg_attr(
+    all(target_arch = "powerpc64", feature = "vsx", feature = "std"),
+    feature(stdarch_powerpc_feature_detection)
+)]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;

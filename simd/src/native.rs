@@ -30,6 +30,7 @@
 //! | `-C target-cpu=x86-64-v3`, or `native` on most machines | AVX2 |
 //! | `-C target-cpu=x86-64-v4`, or `native` on a machine that has it | AVX-512 |
 //! | aarch64 | NEON |
+//! | powerpc64le with the cargo feature `vsx` | VSX |
 //! | wasm32 with `+simd128`, with `+relaxed-simd` | wasm, wasm-relaxed |
 //! | anything else | scalar |
 //!
@@ -54,11 +55,19 @@ mod baseline {
     #[cfg(not(any(
         all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse", target_feature = "sse2"),
         all(target_arch = "aarch64", target_feature = "neon"),
-        all(target_arch = "wasm32", target_feature = "simd128")
+        all(target_arch = "wasm32", target_feature = "simd128"),
+        all(target_arch = "powerpc64", target_endian = "little", feature = "vsx", target_feature = "power8-vector")
     )))]
     pub use crate::backend::scalar::Scalar as Native;
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse", target_feature = "sse2"))]
     pub use crate::backend::sse::Sse2 as Native;
+    #[cfg(all(
+        target_arch = "powerpc64",
+        target_endian = "little",
+        feature = "vsx",
+        target_feature = "power8-vector"
+    ))]
+    pub use crate::backend::vsx::Vsx as Native;
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128", not(target_feature = "relaxed-simd")))]
     pub use crate::backend::wasm::Wasm as Native;
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128", target_feature = "relaxed-simd"))]

@@ -8,4 +8,9 @@
 //! AVX-512. *By lanes*: in scalar code, through memory. *Composed*: of others in this table. Instructions are those for `f32` or for all
 //! lane types, `...` stands for their kin. The methods' own documentation says more.
 //!
+//! VSX, which nightly Rust alone has, is without a column. It is much as NEON with other names (`xvaddsp` for `fadd`, `vadduwm` for
+//! `add`, `xxsel` for `bsl`, `vperm` for `tbl`), but for these: estimates divide, as on wasm; `trunc` is `floor` of the magnitude;
+//! `reduce_min` and `reduce_max` are a tree for integers too; rows of 4 are interleaved twice; `mul_high` is composed; `Narrow` is by
+//! lanes.
+//!
 #![doc = include_str!("vector/operations.md")]

@@ -32,6 +32,8 @@ fn scalar_is_everywhere_and_the_best_comes_last() {
     assert!("sse2".parse::<Level>().is_ok());
     #[cfg(target_arch = "aarch64")]
     assert!("neon".parse::<Level>().is_ok());
+    #[cfg(all(target_arch = "powerpc64", target_endian = "little", feature = "vsx"))]
+    assert_eq!("vsx".parse(), Ok(Level::best()));
     // Not detected but compiled in.
     #[cfg(target_feature = "simd128")]
     assert!("wasm".parse::<Level>().is_ok());
@@ -44,7 +46,7 @@ fn unknown_names() {
     for name in ["", "auto", "sse5", "AVX2", " scalar", "sse42"] {
         let error = name.parse::<Level>().unwrap_err();
         assert_eq!(error, LevelError::Unknown(name.to_owned()));
-        let known = "auto, serial, scalar, sse2, sse4.2, avx2, avx512, neon, wasm, wasm-relaxed";
+        let known = "auto, serial, scalar, sse2, sse4.2, avx2, avx512, neon, vsx, wasm, wasm-relaxed";
         assert_eq!(error.to_string(), format!("unknown level '{name}'; known: {known}"));
     }
 }
@@ -62,6 +64,7 @@ fn unavailable_levels() {
             Isa::Sse42 => cfg!(any(feature = "sse4_2", target_feature = "sse4.2")),
             Isa::Avx2 => cfg!(any(feature = "avx2", target_feature = "avx2")),
             Isa::Avx512 => cfg!(any(feature = "avx512", target_feature = "avx512f")),
+            Isa::Vsx => cfg!(feature = "vsx"),
             _ => true,
         };
         let who = if compiled { "this CPU lacks" } else { "this build leaves out" };

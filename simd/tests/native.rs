@@ -64,6 +64,8 @@ fn level() {
         Isa::Sse2
     } else if cfg!(all(target_arch = "aarch64", target_feature = "neon")) {
         Isa::Neon
+    } else if cfg!(all(target_arch = "powerpc64", target_endian = "little", feature = "vsx")) {
+        Isa::Vsx
     } else if cfg!(all(target_arch = "wasm32", target_feature = "relaxed-simd")) {
         Isa::WasmRelaxed
     } else if cfg!(all(target_arch = "wasm32", target_feature = "simd128")) {

@@ -15,7 +15,8 @@
         target_arch = "x86",
         target_arch = "x86_64",
         target_arch = "aarch64",
-        all(target_arch = "wasm32", target_feature = "simd128")
+        all(target_arch = "wasm32", target_feature = "simd128"),
+        all(target_arch = "powerpc64", feature = "vsx")
     )),
     allow(unused, reason = "what backends of registers share; there is only emulation here")
 )]
@@ -38,6 +39,8 @@ pub(crate) mod neon;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod sse;
 mod tables;
+#[cfg(all(target_arch = "powerpc64", feature = "vsx"))]
+pub(crate) mod vsx;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 pub(crate) mod wasm;
 
@@ -53,7 +56,7 @@ macro_rules! intrinsics {
 use intrinsics;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 use narrow::mul_high_by_widening;
-#[cfg(not(target_arch = "wasm32"))]
+#[cfg(not(any(target_arch = "wasm32", target_arch = "powerpc64")))]
 use narrow::narrow_basics;
 use narrow::narrow_types;
 
@@ -194,6 +197,8 @@ pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
         ),
         #[cfg(target_arch = "aarch64")]
         Isa::Neon => with_features!("neon", neon::Neon),
+        #[cfg(all(target_arch = "powerpc64", feature = "vsx"))]
+        Isa::Vsx => with_features!("altivec,vsx,power8-altivec,power8-vector", vsx::Vsx),
         #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
         Isa::Wasm => wasm::run::<wasm::Wasm, K>(kernel),
         #[cfg(all(target_arch = "wasm32", target_feature = "relaxed-simd"))]

@@ -1,8 +1,9 @@
 //! Constant tables of backends: where [`Vector::compress`](crate::Vector::compress) takes its lanes from.
 
-/// By bit mask: the bytes of the lanes that are on, one after the other; then 0x80, which stands for a zero.
+/// By bit mask: the bytes of the lanes that are on, one after the other; then 0x90, which stands for a zero:
+/// its top bit is set, it is above 15, and modulo 32 it is 16, whichever a processor looks at.
 pub(super) static COMPRESS4: [[u8; 16]; 16] = {
-    let mut table = [[0x80; 16]; 16];
+    let mut table = [[0x90; 16]; 16];
     let mut mask = 0;
     while mask < 16 {
         let (mut lane, mut n) = (0, 0);

@@ -36,7 +36,7 @@ pub fn everywhere() -> impl Iterator<Item = (Level, Width)> {
 pub fn fused(level: Level, width: Width) -> &'static [bool] {
     match level.isa() {
         _ if width == Width::One => &[false],
-        Isa::Avx2 | Isa::Avx512 | Isa::Neon => &[true],
+        Isa::Avx2 | Isa::Avx512 | Isa::Neon | Isa::Vsx => &[true],
         Isa::WasmRelaxed => &[false, true],
         _ => &[false],
     }
