@@ -96,7 +96,7 @@ fn compare(accepted: &Counts, counts: &Counts, limit: f64) -> (String, Verdict) 
         let of = |counts: &Counts| counts.get(name).map_or("-".into(), u64::to_string);
         let (verdict, remark) = match (accepted.get(name), counts.get(name)) {
             (Some(&old), Some(&new)) => {
-                let change = (new as f64 / old as f64 - 1.0) * 100.0;
+                let change = 100.0 * (new as f64 - old as f64) / old as f64;
                 let (verdict, remark) = match change {
                     _ if change > limit => (Verdict::Different, "MORE"),
                     _ if change < -limit => (Verdict::Fewer, "fewer"),
