@@ -208,6 +208,24 @@ impl<V: Vector> Vector for Pair<V> {
         V::store_rows4([a.1, b.1, c.1, d.1], &mut rows[V::LANES..]);
     }
     #[inline(always)]
+    fn transpose(rows: &mut [Self]) {
+        let n = V::LANES;
+        assert!(rows.len() == 2 * n, "transpose: {} vectors of {} lanes", rows.len(), 2 * n);
+        // A quarter at a time, with fewer shuffles and registers than the whole; those off the diagonal change places.
+        let [mut a, mut b, mut c, mut d] = [[V::default(); 8]; 4];
+        for i in 0..n {
+            (a[i], b[i]) = (rows[i].0, rows[i].1);
+            (c[i], d[i]) = (rows[i + n].0, rows[i + n].1);
+        }
+        V::transpose(&mut a[..n]);
+        V::transpose(&mut b[..n]);
+        V::transpose(&mut c[..n]);
+        V::transpose(&mut d[..n]);
+        for i in 0..n {
+            (rows[i], rows[i + n]) = (Self(a[i], c[i]), Self(b[i], d[i]));
+        }
+    }
+    #[inline(always)]
     fn select(mask: Self::Mask, on_true: Self, on_false: Self) -> Self {
         Self(V::select(mask.0, on_true.0, on_false.0), V::select(mask.1, on_true.1, on_false.1))
     }

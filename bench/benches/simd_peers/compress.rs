@@ -20,9 +20,16 @@ pub struct Output {
     numbers: Floats<ROOM>,
 }
 
+/// The input, and the output before.
+pub fn input() -> (Input, Output) {
+    (
+        Input { numbers: super::Aligned(std::array::from_fn(noise)), threshold: 0.6 },
+        Output { len: 0, numbers: super::Aligned([0.0; ROOM]) },
+    )
+}
+
 pub fn contest(criterion: &mut Criterion) {
-    let input = Input { numbers: super::Aligned(std::array::from_fn(noise)), threshold: 0.6 };
-    let blank = Output { len: 0, numbers: super::Aligned([0.0; ROOM]) };
+    let (input, blank) = input();
     let mut expected = blank.clone();
     plain(&input, &mut expected);
     assert!((N / 3..N / 2).contains(&expected.len), "{} of {N} are above", expected.len);
@@ -49,7 +56,7 @@ fn plain(input: &Input, out: &mut Output) {
 }
 
 simd::kernel! {
-    fn with_simd<S>(input: &Input, out: &mut Output) {
+    pub fn with_simd<S>(input: &Input, out: &mut Output) {
         use simd::Vector;
         let threshold = S::Float::splat(input.threshold);
         let mut len = 0;

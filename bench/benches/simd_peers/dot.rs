@@ -14,14 +14,21 @@ pub struct Input {
     b: Floats<N>,
 }
 
-pub fn contest(criterion: &mut Criterion) {
+pub type Output = f32;
+
+/// The input, and the output before.
+pub fn input() -> (Input, Output) {
     let floats = |k: usize| super::Aligned(std::array::from_fn(|i| noise(2 * i + k) - 0.4));
-    let input = Input { a: floats(0), b: floats(1) };
+    (Input { a: floats(0), b: floats(1) }, 0.0)
+}
+
+pub fn contest(criterion: &mut Criterion) {
+    let (input, blank) = input();
     let mut expected = 0.0;
     plain(&input, &mut expected);
 
     let check = move |_: &Input, sum: &f32| sum.to_bits() == expected.to_bits();
-    let mut contest = Contest::new(criterion, "dot", N, (input, 0.0_f32), check);
+    let mut contest = Contest::new(criterion, "dot", N, (input, blank), check);
     contest.simd(with_simd);
     contest.intrinsics(avx2, avx512);
     contest.wide(wide);
@@ -55,7 +62,7 @@ fn plain(input: &Input, sum: &mut f32) {
 }
 
 simd::kernel! {
-    fn with_simd<S>(input: &Input, sum: &mut f32) {
+    pub fn with_simd<S>(input: &Input, sum: &mut f32) {
         use simd::{Float, Vector};
         let mut sums = [S::Float16::splat(0.0); SUMS / 16];
         for (a, b) in input.a.0.as_chunks::<SUMS>().0.iter().zip(input.b.0.as_chunks::<SUMS>().0) {

@@ -14,14 +14,19 @@ pub struct Input {
     indices: Aligned<[u32; N]>,
 }
 
-type Output = Floats<N>;
+pub type Output = Floats<N>;
 
-pub fn contest(criterion: &mut Criterion) {
+/// The input, and the output before.
+pub fn input() -> (Input, Output) {
     let input = Input {
         table: Aligned(std::array::from_fn(noise)),
         indices: Aligned(std::array::from_fn(|i| (noise(i) * TABLE as f32) as u32 % TABLE as u32)),
     };
-    let blank = Aligned([0.0; N]);
+    (input, Aligned([0.0; N]))
+}
+
+pub fn contest(criterion: &mut Criterion) {
+    let (input, blank) = input();
     let mut expected = blank;
     plain(&input, &mut expected);
 
@@ -42,7 +47,7 @@ fn plain(input: &Input, out: &mut Output) {
 
 simd::kernel! {
     /// With a check of every vector of indices.
-    fn with_simd<S>(input: &Input, out: &mut Output) {
+    pub fn with_simd<S>(input: &Input, out: &mut Output) {
         look_up::<S::Float>(input, out);
     }
 }

@@ -15,15 +15,17 @@
 //! All do the same arithmetic, unfused and in the same order, on the same inputs, and are checked before they are timed: bit for
 //! bit against plain Rust, but for `sin_cos`, where it is 2e-6 against the `f64` of the standard library. No NaN is among the
 //! inputs. A kernel that a peer lacks the operation for (gather, say) is left out.
+//!
+//! `instructions.rs` counts the instructions of the `simd` rows.
 
-mod compress;
-mod dot;
-mod gather;
-mod mandelbrot;
-mod sin_cos;
-mod slab;
-mod transpose;
-mod triangle;
+pub(crate) mod compress;
+pub(crate) mod dot;
+pub(crate) mod gather;
+pub(crate) mod mandelbrot;
+pub(crate) mod sin_cos;
+pub(crate) mod slab;
+pub(crate) mod transpose;
+pub(crate) mod triangle;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

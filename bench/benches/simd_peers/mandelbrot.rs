@@ -15,14 +15,19 @@ pub struct Input {
     im: Floats<HEIGHT>,
 }
 
-type Output = super::Aligned<[[i32; WIDTH]; HEIGHT]>;
+pub type Output = super::Aligned<[[i32; WIDTH]; HEIGHT]>;
 
-pub fn contest(criterion: &mut Criterion) {
+/// The input, and the output before.
+pub fn input() -> (Input, Output) {
     let input = Input {
         re: super::Aligned(std::array::from_fn(|i| i as f32 * (3.0 / WIDTH as f32) - 2.2)),
         im: super::Aligned(std::array::from_fn(|i| i as f32 * (1.2 / HEIGHT as f32))),
     };
-    let blank = super::Aligned([[0; WIDTH]; HEIGHT]);
+    (input, super::Aligned([[0; WIDTH]; HEIGHT]))
+}
+
+pub fn contest(criterion: &mut Criterion) {
+    let (input, blank) = input();
     let mut expected = Box::new(blank);
     plain(&input, &mut expected);
 
@@ -56,7 +61,7 @@ fn plain(input: &Input, out: &mut Output) {
 }
 
 simd::kernel! {
-    fn with_simd<S>(input: &Input, out: &mut Output) {
+    pub fn with_simd<S>(input: &Input, out: &mut Output) {
         iterate::<S::Float>(input, out);
     }
 }

@@ -8,7 +8,7 @@ use std::f32::consts::{FRAC_2_PI, FRAC_PI_2};
 
 const N: usize = 4096;
 
-type Input = Floats<N>;
+pub type Input = Floats<N>;
 
 #[derive(Clone)]
 pub struct Output {
@@ -16,9 +16,16 @@ pub struct Output {
     cos: Floats<N>,
 }
 
+/// The input, and the output before.
+pub fn input() -> (Input, Output) {
+    (
+        super::Aligned(std::array::from_fn(|i| noise(i) * 200.0 - 100.0)),
+        Output { sin: super::Aligned([0.0; N]), cos: super::Aligned([0.0; N]) },
+    )
+}
+
 pub fn contest(criterion: &mut Criterion) {
-    let input: Input = super::Aligned(std::array::from_fn(|i| noise(i) * 200.0 - 100.0));
-    let blank = Output { sin: super::Aligned([0.0; N]), cos: super::Aligned([0.0; N]) };
+    let (input, blank) = input();
     let mut contest = Contest::new(criterion, "sin_cos", N, (input, blank), right);
     contest.simd(with_simd);
     contest.intrinsics(avx2, avx512);
@@ -42,7 +49,7 @@ fn plain(input: &Input, out: &mut Output) {
 }
 
 simd::kernel! {
-    fn with_simd<S>(input: &Input, out: &mut Output) {
+    pub fn with_simd<S>(input: &Input, out: &mut Output) {
         use simd::Vector;
         let lanes = S::Float::LANES;
         for i in 0..N / lanes {

@@ -16,16 +16,21 @@ pub struct Input {
     t_max: f32,
 }
 
-type Output = Floats<N>;
+pub type Output = Floats<N>;
 
-pub fn contest(criterion: &mut Criterion) {
+/// The input, and the output before.
+pub fn input() -> (Input, Output) {
     let min: [_; 3] =
         std::array::from_fn(|axis| super::Aligned(std::array::from_fn(|i| noise(3 * i + axis) * 4.0 - 2.0)));
     let max = min.map(|side| super::Aligned(side.0.map(|x| x + 1.5)));
     let direction = [0.1_f32, -0.2, 1.0];
     let inverse = direction.map(f32::recip);
     let input = Input { min, max, origin: [0.1, 0.2, -5.0], inverse, t_max: 100.0 };
-    let blank = super::Aligned([0.0; N]);
+    (input, super::Aligned([0.0; N]))
+}
+
+pub fn contest(criterion: &mut Criterion) {
+    let (input, blank) = input();
     let mut expected = blank;
     plain(&input, &mut expected);
     let hits = expected.0.iter().filter(|t| t.is_finite()).count();
@@ -57,7 +62,7 @@ fn plain(input: &Input, out: &mut Output) {
 }
 
 simd::kernel! {
-    fn with_simd<S>(input: &Input, out: &mut Output) {
+    pub fn with_simd<S>(input: &Input, out: &mut Output) {
         use simd::Vector;
         let lanes = S::Float::LANES;
         for i in 0..N / lanes {

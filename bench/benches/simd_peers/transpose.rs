@@ -9,12 +9,16 @@ const N: usize = 1024;
 /// Not a multiple of 4 KiB: eight columns that share a line of the cache would hide the shuffles.
 const ROOM: usize = N + 16;
 
-type Input = Aligned<[[f32; 8]; N]>;
-type Output = Aligned<[[f32; ROOM]; 8]>;
+pub type Input = Aligned<[[f32; 8]; N]>;
+pub type Output = Aligned<[[f32; ROOM]; 8]>;
+
+/// The input, and the output before.
+pub fn input() -> (Input, Output) {
+    (Aligned(std::array::from_fn(|i| std::array::from_fn(|k| noise(8 * i + k)))), Aligned([[0.0; ROOM]; 8]))
+}
 
 pub fn contest(criterion: &mut Criterion) {
-    let input: Input = Aligned(std::array::from_fn(|i| std::array::from_fn(|k| noise(8 * i + k))));
-    let blank = Aligned([[0.0; ROOM]; 8]);
+    let (input, blank) = input();
     let mut expected = Box::new(blank);
     plain(&input, &mut expected);
 
@@ -38,7 +42,7 @@ fn plain(input: &Input, out: &mut Output) {
 }
 
 simd::kernel! {
-    fn with_simd<S>(input: &Input, out: &mut Output) {
+    pub fn with_simd<S>(input: &Input, out: &mut Output) {
         use simd::Vector;
         let lanes = S::Float::LANES;
         for i in 0..N / lanes {

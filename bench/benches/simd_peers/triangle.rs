@@ -17,14 +17,19 @@ pub struct Input {
     t_max: f32,
 }
 
-type Output = Floats<N>;
+pub type Output = Floats<N>;
 
-pub fn contest(criterion: &mut Criterion) {
+/// The input, and the output before.
+pub fn input() -> (Input, Output) {
     let floats = |k: usize| super::Aligned(std::array::from_fn(|i| noise(9 * i + k) * 2.0 - 1.0));
     let corner = [0, 1, 2].map(|axis| super::Aligned(floats(axis).0.map(|x: f32| x * 0.5)));
     let edges = [[3, 4, 5].map(floats), [6, 7, 8].map(floats)];
     let input = Input { corner, edges, origin: [0.1, 0.2, -5.0], direction: [0.01, -0.02, 1.0], t_max: 100.0 };
-    let blank = super::Aligned([0.0; N]);
+    (input, super::Aligned([0.0; N]))
+}
+
+pub fn contest(criterion: &mut Criterion) {
+    let (input, blank) = input();
     let mut expected = blank;
     plain(&input, &mut expected);
     let hits = expected.0.iter().filter(|t| t.is_finite()).count();
@@ -82,7 +87,7 @@ fn plain(input: &Input, out: &mut Output) {
 }
 
 simd::kernel! {
-    fn with_simd<S>(input: &Input, out: &mut Output) {
+    pub fn with_simd<S>(input: &Input, out: &mut Output) {
         use simd::Vector;
         let (lanes, zero, one) = (S::Float::LANES, S::Float::splat(0.0), S::Float::splat(1.0));
         let splat = |v: [f32; 3]| [S::Float::splat(v[0]), S::Float::splat(v[1]), S::Float::splat(v[2])];
