@@ -38,7 +38,8 @@ unpack() {
 boot() {
     local status
     work=$(mktemp -d)
-    trap 'rm -rf "$work"' EXIT
+    bochs=
+    trap 'rm -rf "$work"; [ -z "$bochs" ] || kill "$bochs" 2>/dev/null || true' EXIT
     mkdir -p "$work"/files/{bin,dev,proc,sys,tmp} "$work/disk"
     cp "$root/bin/busybox" "$work/files/bin/"
     strip -o "$work/files/test" "$1"
@@ -63,8 +64,8 @@ END
     # Linux without xsavec and xsaves: Bochs says a wrong size of the compacted registers, upon which Linux gives up AVX.
     printf '%s\n' 'default linux' 'label linux' 'kernel /linux' \
         'append initrd=/files console=ttyS0 quiet loglevel=1 panic=-1 mitigations=off nokaslr tsc=reliable clearcpuid=aperfmperf,xsavec,xsaves noxsaves' >"$work/disk/isolinux.cfg"
-    "$root/usr/bin/xorriso" -report_about SORRY -as mkisofs -quiet -o "$work/disk.iso" \
-        -b isolinux.bin -c boot.cat -no-emul-boot -boot-load-size 4 -boot-info-table "$work/disk"
+    "$root/usr/bin/xorriso" -as mkisofs -quiet -o "$work/disk.iso" -b isolinux.bin -c boot.cat \
+        -no-emul-boot -boot-load-size 4 -boot-info-table "$work/disk" 2>"$work/messages" || { cat "$work/messages" >&2; exit 1; }
     cat >"$work/bochs" <<END
 cpu: model=${BOCHS_CPU:-corei7_skylake_x}, ips=50000000, reset_on_triple_fault=0
 memory: guest=512, host=512
@@ -83,7 +84,8 @@ END
     # Debian's Bochs starts in its debugger: c continues.
     LTDL_LIBRARY_PATH=$root/usr/lib/x86_64-linux-gnu/bochs/plugins timeout "${BOCHS_TIMEOUT:-900}" \
         "$root/usr/bin/bochs-bin" -q -f "$work/bochs" <<<c >"$work/messages" 2>&1 &
-    tail --pid=$! --follow --lines=+1 --sleep-interval=0.2 "$work/serial" | sed '/^== status/d'
+    bochs=$!
+    tail --pid=$bochs --follow --lines=+1 --sleep-interval=0.2 "$work/serial" | sed --unbuffered '/^== status/d'
     status=$(sed -n 's/^== status \([0-9]*\).*/\1/p' "$work/serial")
     if [ -z "$status" ]; then
         echo "tests/avx512.sh: the program did not end; Bochs says:" >&2
