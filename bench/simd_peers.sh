@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `simd` beside its peers: builds the benchmark for each level that `wide` needs a build for, runs all contestants in turn in
-# several rounds, and writes the table of medians to bench/reports/simd_peers.md. A quarter of an hour on an idle machine.
+# several rounds, and writes the table of medians to bench/reports/simd_peers.md. Ten minutes on an idle machine.
 #
 #   bench/simd_peers.sh [ROUNDS]      5 if not given
 set -euo pipefail
@@ -34,7 +34,7 @@ for ((round = 1; round <= rounds; round++)); do
         filter=()
         [ "$build" = baseline ] || filter=(/wide/)
         bench "$build" -- "${filter[@]}" --save-baseline "round$round" \
-            --warm-up-time 0.2 --measurement-time 0.6 --sample-size 30 >/dev/null
+            --warm-up-time 0.2 --measurement-time 0.6 --sample-size 30 --nresamples 1001 --noplot >/dev/null
     done
 done
 

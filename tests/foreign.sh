@@ -16,7 +16,7 @@ usage: tests/foreign.sh TARGET [cargo test arguments]
   windows                              x86-64, on wine
   darwin                               macOS on ARM; type-checked, not run
   qemu64 Nehalem SandyBridge Haswell   this machine's build on an older x86-64
-  asan                                 this machine's build with AddressSanitizer (five minutes)
+  asan msan                            this machine's build with AddressSanitizer or MemorySanitizer (five minutes)
 
 QEMU_CPU picks one CPU. Without arguments: simd, and where it has registers there the exactness of the tracer's hits too.
 END
@@ -68,10 +68,14 @@ case ${1:-} in
     # AVX, which the second of these has, is no level of its own.
     Nehalem | SandyBridge) triple=x86_64-unknown-linux-gnu qemu=x86_64 levels=serial,scalar,sse2,sse4.2 ;;
     Haswell)
-        # qemu 7.2 gathers from wrong places when the indices are in ymm4.
-        filter=(--exact --skip from_env --skip memory::gather)
+        # Faults of qemu 7.2, seen with small C programs too: it gathers from wrong places when the indices are in ymm4, and its
+        # vmaskmovps reads the lanes that are off, which need not exist. Real processors with AVX2 run these three.
+        filter=(--exact --skip from_env --skip memory::gather --skip memory::masked --skip memory::partial)
         triple=x86_64-unknown-linux-gnu qemu=x86_64 levels=serial,scalar,sse2,sse4.2,avx2 ;;
     asan) triple=x86_64-unknown-linux-gnu levels=serial,scalar,sse2 what=(--all-features --lib --test level --test interop --test ops) ;;
+    # Of AVX-512 it knows too little; of the fences of level serial it takes the results for defined.
+    msan) triple=x86_64-unknown-linux-gnu levels=serial,scalar,sse2
+        what=(--no-default-features --features std,sse4_2,avx2 --lib --test level --test ops) ;;
     *) usage ;;
 esac
 target=$1
@@ -100,6 +104,7 @@ else
             export "${variable}_RUNNER=wine64" ;;
         darwin) ;;
         asan) missing+=("a nightly toolchain: RUSTFLAGS=-Zsanitizer=address cargo +nightly test --target $triple -p simd") ;;
+        msan) missing+=("a nightly toolchain: RUSTFLAGS=-Zsanitizer=memory cargo +nightly test -Zbuild-std --target $triple -p simd") ;;
         *)
             need "qemu-$qemu" "apt install qemu-user"
             export "${variable}_RUNNER=qemu-$qemu -L /usr/$gnu" ;;

@@ -100,8 +100,8 @@ fn medians(criterion: &Path) -> Result<BTreeMap<[String; 3], f64>, Box<dyn Error
 }
 
 fn directories(path: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
-    let entries = fs::read_dir(path)
-        .map_err(|error| format!("{}: {error}; run bench/simd_peers.sh first", path.display()))?;
+    let entries =
+        fs::read_dir(path).map_err(|error| format!("{}: {error}; run bench/simd_peers.sh first", path.display()))?;
     let paths: Vec<_> = entries.map(|entry| Ok(entry?.path())).collect::<std::io::Result<_>>()?;
     Ok(paths.into_iter().filter(|path| path.is_dir()).collect())
 }

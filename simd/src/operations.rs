@@ -4,7 +4,7 @@
 //! the many NaNs a NaN result is. No level flushes denormals to zero or fuses what is written apart.
 //!
 //! The columns of levels are for vectors as wide as the level's registers: four lanes for SSE, NEON and wasm, eight for AVX2, sixteen for
-//! AVX-512; wider vectors are made of those. Vectors of 16- and 8-bit lanes (`Narrow`) are 16 bytes in those columns, 32 for AVX2 and
+//! AVX-512; wider vectors are made of those. `Double` is four lanes in those columns. Vectors of 16- and 8-bit lanes (`Narrow`) are 16 bytes in those columns, 32 for AVX2 and
 //! AVX-512. *By lanes*: in scalar code, through memory. *Composed*: of others in this table. Instructions are those for `f32` or for all
 //! lane types, `...` stands for their kin. The methods' own documentation says more.
 //!

@@ -366,7 +366,10 @@ impl<V: Float> Float for Pair<V> {
 }
 
 impl<V: Double> Double for Pair<V> {
-    lanewise! { abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round(); }
+    lanewise! {
+        abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round();
+        mul_add(b, c); mul_sub(b, c); neg_mul_add(b, c); neg_mul_sub(b, c); mul_add_exact(b, c);
+    }
     #[inline(always)]
     fn reduce_add(self) -> f64 {
         (self.0 + self.1).reduce_add()

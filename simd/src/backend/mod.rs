@@ -36,6 +36,8 @@ pub(crate) mod avx512;
 mod narrow;
 #[cfg(target_arch = "aarch64")]
 pub(crate) mod neon;
+#[cfg(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64"))]
+mod quad;
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
 pub(crate) mod sse;
 mod tables;

@@ -320,6 +320,22 @@ impl Double for f64 {
         soft::double::round_ties_even(self)
     }
     #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        self * b - c
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, b: Self, c: Self) -> Self {
+        c - self * b
+    }
+    #[inline(always)]
+    fn mul_add_exact(self, b: Self, c: Self) -> Self {
+        soft::mul_add_double(self, b, c)
+    }
+    #[inline(always)]
     fn reduce_add(self) -> f64 {
         self
     }

@@ -258,7 +258,19 @@ impl<V: Fence + Float<Int = Wrapping<i32>>> Float for Fenced<V> {
 
 impl<V: Fence + Double> Double for Fenced<V> {
     fenced! { V as Double:
-        abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round();
+        abs(); copysign(sign); sqrt(); floor(); ceil(); trunc(); round(); mul_add_exact(b, c);
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        self * b - c
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, b: Self, c: Self) -> Self {
+        c - self * b
     }
     #[inline(always)]
     fn reduce_add(self) -> f64 {

@@ -142,9 +142,69 @@ pub(crate) fn mul_add(a: f32, b: f32, c: f32) -> f32 {
     sum as f32
 }
 
+/// A finite number other than zero as an integer times a power of two; the integer's highest bit is bit 125.
+#[inline(always)]
+fn scaled(mantissa: u128, exponent: i32) -> (u128, i32) {
+    let shift = mantissa.leading_zeros() as i32 - 2;
+    (mantissa << shift, exponent - shift)
+}
+
+/// `a * b + c` with one rounding, of `f64`: in integers, with the bits that fall off the end gathered in the last one.
+pub(crate) fn mul_add_double(a: f64, b: f64, c: f64) -> f64 {
+    let product = a * b;
+    if !(a.is_finite() && b.is_finite()) || a == 0.0 || b == 0.0 {
+        return product + c;
+    }
+    if !c.is_finite() {
+        return c; // where the product may have overflowed
+    }
+    if c == 0.0 {
+        return product;
+    }
+    let parts = |x: f64| {
+        let (fraction, exponent) = (x.to_bits() & (1 << 52) - 1, (x.to_bits() >> 52) as i32 & 2047);
+        // Denormals have the exponent of the smallest normal numbers, and no hidden bit.
+        if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) }
+    };
+    let ((a_bits, a_exponent), (b_bits, b_exponent), (c_bits, c_exponent)) = (parts(a), parts(b), parts(c));
+    let first = scaled(u128::from(a_bits) * u128::from(b_bits), a_exponent + b_exponent);
+    let second = scaled(u128::from(c_bits), c_exponent);
+    let (first_sign, second_sign) = (a.is_sign_negative() != b.is_sign_negative(), c.is_sign_negative());
+    let first_is_larger = (first.1, first.0) >= (second.1, second.0);
+    let ((large, exponent), (small, small_exponent), sign) =
+        if first_is_larger { (first, second, first_sign) } else { (second, first, second_sign) };
+
+    let sum = {
+        let distance = (exponent - small_exponent) as u32;
+        let (kept, lost) =
+            if distance > 127 { (0, true) } else { (small >> distance, small << (127 - distance) << 1 != 0) };
+        // Both have twenty zeros at the end: bits are lost only where no leading ones can cancel.
+        let small = kept | u128::from(lost);
+        if first_sign == second_sign { large + small } else { large - small }
+    };
+    if sum == 0 {
+        return 0.0;
+    }
+    // As many bits as a number of this size has, from 2^-1074 up.
+    let highest = 127 - sum.leading_zeros() as i32 + exponent;
+    let unit = (highest - 52).max(-1074);
+    let rounded = match unit - exponent {
+        shift @ ..=0 => (sum << -shift) as u64,
+        shift @ 1..=127 => {
+            let (whole, rest, half) = ((sum >> shift) as u64, sum & ((1 << shift) - 1), 1 << (shift - 1));
+            whole + u64::from(rest > half || rest == half && whole & 1 == 1)
+        }
+        _ => 0,
+    };
+    // A hidden bit, and one that rounding carried, add to the exponent.
+    let finite = (((unit + 1074).min(2046) as u64) << 52) + rounded;
+    let bits = if highest > 1023 { f64::INFINITY.to_bits() } else { finite };
+    f64::from_bits(bits | u64::from(sign) << 63)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{mul_add, portable};
+    use super::{mul_add, mul_add_double, portable};
 
     macro_rules! same_bits_as_std {
         ($name:ident: $f:ty, $bits:ty) => {
@@ -170,6 +230,42 @@ mod tests {
     }
     same_bits_as_std!(single: f32, u32);
     same_bits_as_std!(double: f64, u64);
+
+    /// Against the standard library's, on numbers of like size, with cancellation, near overflow and underflow.
+    #[cfg(not(all(windows, target_env = "gnu")))]
+    #[test]
+    fn fused_double() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state ^ state >> 32
+        };
+        for round in 0..3_000_000 {
+            let [mut a, mut b, mut c] = [random(), random(), random()].map(f64::from_bits);
+            match round % 6 {
+                0 => {
+                    [a, b, c] =
+                        [a, b, c].map(|x| f64::from_bits(x.to_bits() & 0x803f_ffff_ffff_ffff | 0x3fc0_0000_0000_0000))
+                }
+                1 => c = -(a * b),
+                2 => c = -(a * b) * (1.0 + f64::EPSILON),
+                // Short numbers: ties.
+                3 => [a, b, c] = [a, b, c].map(|x| f64::from_bits(x.to_bits() & 0xbfff_fff0_0000_0000)),
+                // Denormal results.
+                4 => {
+                    [a, b] =
+                        [a, b].map(|x| f64::from_bits(x.to_bits() & 0x800f_ffff_ffff_ffff | 0x1e50_0000_0000_0000));
+                    c = f64::from_bits(c.to_bits() & 0x803f_ffff_ffff_ffff);
+                }
+                _ => {}
+            }
+            let (got, expected) = (mul_add_double(a, b, c), a.mul_add(b, c));
+            assert!(
+                got.to_bits() == expected.to_bits() || got.is_nan() && expected.is_nan(),
+                "{a:e} * {b:e} + {c:e}: got {got:e}, expected {expected:e}"
+            );
+        }
+    }
 
     /// Against the standard library's (where it is right: the C library of MinGW rounds twice).
     #[cfg(not(all(windows, target_env = "gnu")))]

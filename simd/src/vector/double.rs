@@ -5,8 +5,9 @@ use std::ops::*;
 
 /// Vectors of `f64`. `f64` itself is one, of a single lane.
 ///
-/// At every level they are made of lanes, which LLVM packs into the level's registers where it sees how (arithmetic in loops, as a
-/// rule); their masks are types of their own. What costs more than `f32` needs no more accuracy in most kernels: see [`Float`] first.
+/// On x86 and ARM four of them and eight are registers of the level (at AVX-512 those of AVX2); two of them, and all on other
+/// processors, are made of lanes, which LLVM packs where it sees how. Masks and indices of four and eight are those of as many 32-bit
+/// lanes. What costs more than `f32` needs no more accuracy in most kernels: see [`Float`] first.
 pub trait Double:
     Vector<Lane = f64>
     + Add<Output = Self>
@@ -33,6 +34,23 @@ pub trait Double:
     fn trunc(self) -> Self;
     /// Nearest integer, ties to even; keeps the sign of zero.
     fn round(self) -> Self;
+    /// `self * b + c`, relaxed: rounded once where the level has the instruction (AVX2, AVX-512, NEON), else twice.
+    #[doc(alias("fma", "madd"))]
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    /// `self * b - c`, relaxed as [`Double::mul_add`].
+    #[doc(alias("msub"))]
+    fn mul_sub(self, b: Self, c: Self) -> Self;
+    /// `c - self * b`, relaxed as [`Double::mul_add`].
+    #[doc(alias("nmsub"))]
+    fn neg_mul_add(self, b: Self, c: Self) -> Self;
+    /// `-(self * b) - c`, relaxed as [`Double::mul_add`].
+    #[inline(always)]
+    fn neg_mul_sub(self, b: Self, c: Self) -> Self {
+        (-self).mul_sub(b, c)
+    }
+    /// `self * b + c`, rounded once at every level; slow where the level lacks the instruction.
+    #[doc(alias("fma"))]
+    fn mul_add_exact(self, b: Self, c: Self) -> Self;
     /// Sum of the lanes, added in the order of [`Vector::reduce_min`].
     fn reduce_add(self) -> f64;
     /// Product of the lanes, multiplied in the order of [`Vector::reduce_min`].

@@ -48,10 +48,18 @@ fn results_of<D: Double, F: Float>(a: &[f64], b: &[f64], out: &mut Vec<f64>) {
         D::splat(a.reduce_min()),
         D::splat(a.min_index(b.ge(b)).map_or(-1.0, |lane| lane as f64)),
         D::gather(&[1.5, 2.5, 3.5], D::Index::from_fn(|i| (i % 3) as u32)),
+        a.mul_add_exact(b, a),
+        a.mul_add_exact(b, -(a * b)),
     ];
     for result in results {
         out.extend_from_slice(&result.to_block().0[..D::LANES]);
     }
+}
+
+/// Of one lane: the integer arithmetic that a test beside it compares with the standard library. That is not taken here, for the C
+/// library behind it rounds twice on some targets (MinGW, emulators).
+fn fused(a: f64, b: f64, c: f64) -> f64 {
+    Double::mul_add_exact(a, b, c)
 }
 
 /// The same of numbers.
@@ -73,7 +81,7 @@ fn expected(a: &[f64], b: &[f64], out: &mut Vec<f64>) {
         .filter(|&i| !b[i].is_nan() && !a[i].is_nan())
         .reduce(|best, i| if a[i] < a[best] { i } else { best })
         .map_or(-1.0, |lane| lane as f64);
-    let functions: [&dyn Fn(usize) -> f64; 35] = [
+    let functions: [&dyn Fn(usize) -> f64; 37] = [
         &|i| a[i] + b[i],
         &|i| a[i] - b[i],
         &|i| a[i] * b[i],
@@ -109,6 +117,8 @@ fn expected(a: &[f64], b: &[f64], out: &mut Vec<f64>) {
         &|_| tree(min),
         &|_| least,
         &|i| [1.5, 2.5, 3.5][i % 3],
+        &|i| fused(a[i], b[i], a[i]),
+        &|i| fused(a[i], b[i], -(a[i] * b[i])),
     ];
     for function in functions {
         out.extend((0..n).map(function));
@@ -125,6 +135,44 @@ simd::kernel! {
         results_of::<S::Double8, S::Float8>(a, b, out);
     }
 }
+/// The relaxed family: rounded once or twice, no other way.
+#[inline(always)]
+fn relaxed_of<D: Double>(a: &[f64], b: &[f64], c: &[f64], out: &mut Vec<f64>) {
+    let (a, b, c) = (D::load(a), D::load(b), D::load(c));
+    for result in [a.mul_add(b, c), a.mul_sub(b, c), a.neg_mul_add(b, c), a.neg_mul_sub(b, c)] {
+        out.extend_from_slice(&result.to_block().0[..D::LANES]);
+    }
+}
+simd::kernel! {
+    fn relaxed<S>(a: &[f64], b: &[f64], c: &[f64], out: &mut Vec<f64>) {
+        relaxed_of::<S::Double4>(a, b, c, out);
+        relaxed_of::<S::Double8>(a, b, c, out);
+    }
+}
+
+#[test]
+fn relaxed_is_rounded_once_or_twice() {
+    let mut random = Random(10);
+    for _ in 0..1000 {
+        let mut numbers = || std::array::from_fn::<f64, 8, _>(|_| f64::from(random.bits() as i32) / 65_537.0);
+        let (a, b, c) = (numbers(), numbers(), numbers());
+        for level in Level::available() {
+            let mut got = Vec::new();
+            relaxed(level, &a, &b, &c, &mut got);
+            for (k, &got) in got.iter().enumerate() {
+                let (lanes, k) = if k < 16 { (4, k) } else { (8, k - 16) };
+                let (i, operation) = (k % lanes, k / lanes);
+                let (product, sum) = ([a[i], a[i], -a[i], -a[i]][operation], [c[i], -c[i], c[i], -c[i]][operation]);
+                let possible = [product * b[i] + sum, fused(product, b[i], sum)];
+                assert!(
+                    possible.contains(&got),
+                    "{level}, operation {operation}: {got:e}, expected one of {possible:?}"
+                );
+            }
+        }
+    }
+}
+
 simd::kernel! {
     /// Halves of four, two lanes each.
     fn halves<S>(a: &[f64]) -> [f64; 2] {

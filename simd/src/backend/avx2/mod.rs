@@ -1,5 +1,6 @@
 //! AVX2 and FMA, eight lanes. Four lanes are [`sse`](super::sse)'s.
 
+use super::quad::Double4;
 use super::sse::{self, Sse, StreamFence};
 use super::tables::{COMPRESS8, Lanes8};
 use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
@@ -14,11 +15,13 @@ use std::arch::x86_64::*;
 use std::fmt;
 use std::ops::*;
 
+mod double;
 mod float;
 mod integer;
 mod lanes;
 mod narrow;
 
+pub(super) use double::Doubles;
 pub(super) use narrow::{Char32, Short16, UChar32, UShort16};
 
 // ---- The set ----
@@ -47,7 +50,7 @@ impl Simd for Avx2 {
     type Uint16 = Pair<Uint8>;
     type Bool16 = Pair<Bool8>;
     type Double2 = Pair<f64>;
-    type Double4 = Pair<Self::Double2>;
+    type Double4 = Double4<double::Doubles>;
     type Double8 = Pair<Self::Double4>;
     type Float = Float8;
     narrow_types!(sse::Short8<Self>, sse::UShort8<Self>, sse::Char16<Self>, sse::UChar16<Self>;

@@ -1,6 +1,7 @@
 //! AVX-512, sixteen lanes and mask registers. Four and eight lanes are [`sse`](super::sse)'s and [`avx2`](super::avx2)'s.
 
 use super::avx2::{self, Avx2};
+use super::quad::Double4;
 use super::sse::{self, StreamFence};
 use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
 use crate::pair::Pair;
@@ -40,7 +41,7 @@ impl Simd for Avx512 {
     type Uint16 = Uint16;
     type Bool16 = Bool16;
     type Double2 = Pair<f64>;
-    type Double4 = Pair<Self::Double2>;
+    type Double4 = Double4<avx2::Doubles>;
     type Double8 = Pair<Self::Double4>;
     type Float = Float16;
     narrow_types!(sse::Short8<Avx2>, sse::UShort8<Avx2>, sse::Char16<Avx2>, sse::UChar16<Avx2>;

@@ -1,5 +1,6 @@
 //! aarch64, four lanes: Advanced SIMD.
 
+use super::quad::Double4;
 use super::tables::COMPRESS4;
 use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
 use crate::pair::Pair;
@@ -9,6 +10,7 @@ use std::arch::aarch64::*;
 use std::fmt;
 use std::ops::*;
 
+mod double;
 mod float;
 mod integer;
 mod lanes;
@@ -35,7 +37,7 @@ impl Simd for Neon {
     type Uint16 = Pair<Self::Uint8>;
     type Bool16 = Pair<Self::Bool8>;
     type Double2 = Pair<f64>;
-    type Double4 = Pair<Self::Double2>;
+    type Double4 = Double4<double::Doubles>;
     type Double8 = Pair<Self::Double4>;
     type Float = Float4;
     narrow_types!(narrow::Short8, narrow::UShort8, narrow::Char16, narrow::UChar16);

@@ -1,5 +1,6 @@
 //! x86, four lanes: SSE2, SSE4.2, and the four-lane types of AVX2 and AVX-512, told apart by a marker.
 
+use super::quad::Double4;
 use super::tables::COMPRESS4;
 use super::{check_bounds, intrinsics, list_lanes, mask_basics, narrow_types, operators, vector_basics};
 use crate::pair::Pair;
@@ -14,6 +15,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::*;
 
+mod double;
 mod float;
 mod integer;
 mod lanes;
@@ -67,7 +69,7 @@ macro_rules! four_lanes_native {
             type Uint16 = Pair<Self::Uint8>;
             type Bool16 = Pair<Self::Bool8>;
             type Double2 = Pair<f64>;
-            type Double4 = Pair<Self::Double2>;
+            type Double4 = Double4<double::Doubles<Self>>;
             type Double8 = Pair<Self::Double4>;
             type Float = Self::Float4;
             narrow_types!(Short8<Self>, UShort8<Self>, Char16<Self>, UChar16<Self>);
@@ -136,8 +138,12 @@ impl<I: Sse> Not for Bool4<I> {
 
 impl<I> Bool4<I> {
     #[inline(always)]
-    fn new(x: __m128) -> Self {
+    pub(super) fn new(x: __m128) -> Self {
         Self(x, PhantomData)
+    }
+    #[inline(always)]
+    pub(super) fn ps(self) -> __m128 {
+        self.0
     }
     #[inline(always)]
     fn of_si(x: __m128i) -> Self {
