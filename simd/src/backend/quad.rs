@@ -197,11 +197,11 @@ impl<Q: Quad> Vector for Double4<Q> {
     }
     #[inline(always)]
     fn reduce_min(self) -> f64 {
-        self.fold(|a, b| Vector::min(a, b))
+        self.fold(Vector::min)
     }
     #[inline(always)]
     fn reduce_max(self) -> f64 {
-        self.fold(|a, b| Vector::max(a, b))
+        self.fold(Vector::max)
     }
 }
 

@@ -162,7 +162,7 @@ pub(crate) fn mul_add_double(a: f64, b: f64, c: f64) -> f64 {
         return product;
     }
     let parts = |x: f64| {
-        let (fraction, exponent) = (x.to_bits() & (1 << 52) - 1, (x.to_bits() >> 52) as i32 & 2047);
+        let (fraction, exponent) = (x.to_bits() & ((1 << 52) - 1), (x.to_bits() >> 52) as i32 & 2047);
         // Denormals have the exponent of the smallest normal numbers, and no hidden bit.
         if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) }
     };
