@@ -3,9 +3,9 @@
 
 use simd::{Isa, Level};
 use tests::{Random, brute_force, real_scene};
-use tracer::bvh::{BuildConfig, Bvh};
+use tracer::bvh::{BuildConfig, Bvh, CollapseConfig};
 use tracer::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
-use tracer::method::{BitVec, Context, Method, Packet, SharedOrigin, SlabForm, Width};
+use tracer::method::{BitVec, Context, Method, Packet, SharedOrigin, Single, SlabForm, Width};
 use tracer::progress::Silent;
 use tracer::render::{EyeRays, Frame, Settings, Surfaces};
 use tracer::scene::{Mesh, Scene, builtin};
@@ -35,7 +35,15 @@ fn assert_same(hits: &HitBatch, expected: &HitBatch, rays: &RayBatch, what: &str
     }
 }
 
-/// All levels x widths x forms of the box test, then thread counts, against the single-ray walk; that against brute force on `checked`
+fn check_method(method: &dyn Method, rays: &RayBatch, expected: &HitBatch, what: &str) {
+    assert_same(&closest(method, rays), expected, rays, what);
+    let occluded = any(method, rays);
+    for (i, hit) in expected.iter().enumerate() {
+        assert_eq!(occluded.get(i), !hit.is_miss(), "{what}: any, ray {i} {:?}", rays.get(i));
+    }
+}
+
+/// All levels x widths x forms of the box test, and single rays through wide trees, then thread counts, against the single-ray walk; that against brute force on `checked`
 /// rays spread over the batch. Returns how many rays hit.
 fn check(name: &str, mesh: &Mesh, trees: &[(&str, &Bvh)], rays: &RayBatch, checked: usize) -> usize {
     let expected = closest(&Packet::new(trees[0].1, Level::SCALAR, Width::One), rays);
@@ -56,13 +64,17 @@ fn check(name: &str, mesh: &Mesh, trees: &[(&str, &Bvh)], rays: &RayBatch, check
                     let what =
                         format!("{name}, {tree} tree, {level}, width {width}, {form:?}, shared origin {shared:?}");
                     let method = Packet::new(bvh, level, width).with_form(form).with_shared_origin(shared);
-                    assert_same(&closest(&method, rays), &expected, rays, &what);
-                    let occluded = any(&method, rays);
-                    for (i, hit) in expected.iter().enumerate() {
-                        assert_eq!(occluded.get(i), !hit.is_miss(), "{what}: any, ray {i} {:?}", rays.get(i));
-                    }
+                    check_method(&method, rays, &expected, &what);
                 }
             }
+        }
+        let config = CollapseConfig::default();
+        let (four, eight, sixteen) = (bvh.collapse(&config), bvh.collapse(&config), bvh.collapse(&config));
+        for level in Level::available() {
+            let what = |n: usize| format!("{name}, {tree} tree of {n} children, {level}, single rays");
+            check_method(&Single::<4>::new(&four, level), rays, &expected, &what(4));
+            check_method(&Single::<8>::new(&eight, level), rays, &expected, &what(8));
+            check_method(&Single::<16>::new(&sixteen, level), rays, &expected, &what(16));
         }
     }
     for threads in [2, 3] {
@@ -267,6 +279,11 @@ fn no_rays_and_no_tree_are_fine() {
     let method = Packet::new(&bvh, Level::best(), Width::Auto);
     assert!(closest(&method, &RayBatch::new()).is_empty());
     let one: RayBatch = [Ray::new([0.0; 3], [1.0, 0.0, 0.0])].into_iter().collect();
+    assert_eq!(closest(&method, &one).get(0), Hit::MISS);
+    assert_eq!(any(&method, &one).count_ones(), 0);
+    let wide = bvh.collapse(&CollapseConfig::default());
+    let method = Single::<8>::new(&wide, Level::best());
+    assert!(closest(&method, &RayBatch::new()).is_empty());
     assert_eq!(closest(&method, &one).get(0), Hit::MISS);
     assert_eq!(any(&method, &one).count_ones(), 0);
 }

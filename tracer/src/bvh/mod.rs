@@ -1,12 +1,16 @@
 //! The bounding volume hierarchy: a depth-first array of nodes with skip pointers.
 
 pub mod build;
+mod collapse;
 mod node;
 mod stats;
+mod wide;
 
 pub use build::BuildConfig;
+pub use collapse::CollapseConfig;
 pub use node::Node;
 pub use stats::BvhStats;
+pub use wide::{Child, WideBvh, WideNode};
 
 use crate::geometry::Triangle;
 

@@ -98,6 +98,7 @@ impl HitBatch {
     /// # Panics
     /// If `i >= len()`.
     #[must_use]
+    #[inline]
     pub fn get(&self, i: usize) -> Hit {
         assert!(i < self.len, "hit {i} of {}", self.len);
         let (block, lane) = (&self.blocks[i / 16], i % 16);

@@ -6,6 +6,7 @@ pub(crate) mod moller_trumbore;
 mod ray;
 pub(crate) mod slab;
 mod triangle;
+mod triangle_group;
 mod vec3;
 
 pub use aabb::Aabb;
@@ -13,4 +14,5 @@ pub use hit::{Hit, HitBatch, HitBlock};
 pub(crate) use ray::Packet;
 pub use ray::{Ray, RayBatch, RayBlock};
 pub use triangle::Triangle;
+pub use triangle_group::TriangleGroup;
 pub use vec3::Vec3;

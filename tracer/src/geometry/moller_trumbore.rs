@@ -1,7 +1,7 @@
 //! The triangle test of Möller & Trumbore 1997, and the exact hit made of it.
 
-use super::slab::{Near, Origin, interval};
-use super::{Packet, Triangle, Vec3};
+use super::slab::{Near, Origin, between, interval};
+use super::{Packet, Triangle, TriangleGroup, Vec3};
 use simd::{Float, Mask};
 
 /// A hit per lane, in the lanes that `mask` names.
@@ -25,28 +25,70 @@ pub(crate) fn intersect<F: Float, O: Origin<F>>(
     origin: O,
     near: Near,
 ) -> Option<Candidate<F>> {
-    let (e1, e2) = (Vec3::splat(triangle.e1), Vec3::splat(triangle.e2));
-    let (from_v0, q, distance) = origin.triangle_terms(ray, triangle);
-    let p = ray.dir.cross(e2);
-    // Everything times the determinant's sign; the division is left to packets that hit.
-    let det = e1.dot(p);
-    let u = from_v0.dot(p).mul_sign(det);
-    let v = ray.dir.dot(q).mul_sign(det);
-    let size = det.abs();
-    let zero = F::splat(0.0);
-    // A determinant that is not a normal number has no finite reciprocal.
-    let inside = zero.le(u) & zero.le(v) & (u + v).le(size) & F::splat(f32::MIN_POSITIVE).le(size);
-    if inside.none() {
-        return None;
+    let inside = Inside::test(
+        ray.dir,
+        Vec3::splat(triangle.e1),
+        Vec3::splat(triangle.e2),
+        origin.triangle_terms(ray, triangle),
+    )?;
+    let infinity = F::splat(f32::INFINITY);
+    Some(inside.candidate(ray, interval(&planes(triangle), ray, origin, near, -infinity, infinity)))
+}
+
+/// One ray, the same in every lane, against a triangle per lane; the same bits as [`intersect`].
+#[inline(always)]
+pub(crate) fn intersect_group<F: Float, const W: usize>(
+    triangles: &TriangleGroup<W>,
+    ray: &Packet<F>,
+    near: Near,
+) -> Option<Candidate<F>> {
+    let [v0, e1, e2] = triangles.corner_and_edges::<F>();
+    let from_v0 = ray.org - v0;
+    let q = from_v0.cross(e1);
+    let inside = Inside::test(ray.dir, e1, e2, (from_v0, q, e2.dot(q)))?;
+    // As in `planes`.
+    let (b, c) = (v0 + e1, v0 + e2);
+    let (low, high) = (b.min(c).min(v0), c.max(b).max(v0));
+    let choose = |axis, low, high| if near.is_upper(axis) { (high, low) } else { (low, high) };
+    let (x, y, z) = (choose(0, low.x, high.x), choose(1, low.y, high.y), choose(2, low.z, high.z));
+    let (near, far) = (Vec3 { x: x.0, y: y.0, z: z.0 }, Vec3 { x: x.1, y: y.1, z: z.1 });
+    let infinity = F::splat(f32::INFINITY);
+    Some(inside.candidate(ray, between(near - ray.org, far - ray.org, ray, -infinity, infinity)))
+}
+
+/// Rays inside of their triangles. `u` and `v` are times the determinant's size, `distance` times the determinant.
+struct Inside<F: Float> {
+    mask: F::Mask,
+    u: F,
+    v: F,
+    distance: F,
+    det: F,
+}
+
+impl<F: Float> Inside<F> {
+    /// From `o = origin - v0`, `q = o x e1` and `e2 . q`. `None` when no lane is hit: the division is left to those that are.
+    #[inline(always)]
+    fn test(dir: Vec3<F>, e1: Vec3<F>, e2: Vec3<F>, (o, q, distance): (Vec3<F>, Vec3<F>, F)) -> Option<Self> {
+        let p = dir.cross(e2);
+        let det = e1.dot(p);
+        let u = o.dot(p).mul_sign(det);
+        let v = dir.dot(q).mul_sign(det);
+        let size = det.abs();
+        let zero = F::splat(0.0);
+        // A determinant that is not a normal number has no finite reciprocal.
+        let mask = zero.le(u) & zero.le(v) & (u + v).le(size) & F::splat(f32::MIN_POSITIVE).le(size);
+        if mask.none() { None } else { Some(Self { mask, u, v, distance, det }) }
     }
 
-    let infinity = F::splat(f32::INFINITY);
-    let (box_near, box_far) = interval(&planes(triangle), ray, origin, near, -infinity, infinity);
-    let inv = F::splat(1.0) / size;
-    // Adding 0 turns -0, which depends on the order of comparisons, into 0.
-    let t = (distance.mul_sign(det) * inv).max(box_near).min(box_far) + zero;
-    let mask = inside & box_near.le(box_far) & ray.t_min.le(t) & t.le(ray.t_max);
-    Some(Candidate { mask, t, u: u * inv, v: v * inv })
+    /// The hit, given the ray's interval in the triangle's box.
+    #[inline(always)]
+    fn candidate(self, ray: &Packet<F>, (box_near, box_far): (F, F)) -> Candidate<F> {
+        let inv = F::splat(1.0) / self.det.abs();
+        // Adding 0 turns -0, which depends on the order of comparisons, into 0.
+        let t = (self.distance.mul_sign(self.det) * inv).max(box_near).min(box_far) + F::splat(0.0);
+        let mask = self.mask & box_near.le(box_far) & ray.t_min.le(t) & t.le(ray.t_max);
+        Candidate { mask, t, u: self.u * inv, v: self.v * inv }
+    }
 }
 
 /// [`Triangle::bounds`] in the order of [`Node::planes`](crate::bvh::Node::planes).

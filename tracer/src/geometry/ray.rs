@@ -1,7 +1,7 @@
 //! Rays: one, a batch in structure-of-arrays blocks, and a packet as kernels see it.
 
 use super::Vec3;
-use simd::{Block, Float};
+use simd::{Block, Float, Mask};
 
 /// A ray and the interval of it that counts, both ends included. `t` is in units of the direction's length, which need not be 1.
 ///
@@ -100,6 +100,7 @@ impl RayBatch {
     }
 
     /// Appends a ray.
+    #[inline]
     pub fn push(&mut self, ray: Ray) {
         let lane = self.len % 16;
         if lane == 0 {
@@ -113,9 +114,18 @@ impl RayBatch {
             block.t_min.0[lane] = ray.t_min;
             block.t_max.0[lane] = ray.t_max;
         }
-        let same = |o: [f32; 3]| o.map(f32::to_bits) == ray.org.map(f32::to_bits);
-        self.origin = if self.len == 0 { Some(ray.org) } else { self.origin.filter(|&o| same(o)) };
+        self.origin = match self.origin {
+            _ if self.len == 0 => Some(ray.org),
+            Some(origin) if same_bits(origin, ray.org) => Some(origin),
+            _ => None,
+        };
         self.len += 1;
+    }
+
+    /// Removes all rays and keeps the memory.
+    pub fn clear(&mut self) {
+        self.blocks.clear();
+        self.len = 0;
     }
 
     /// Ray number `i`.
@@ -169,6 +179,11 @@ impl Extend<Ray> for RayBatch {
     fn extend<I: IntoIterator<Item = Ray>>(&mut self, rays: I) {
         rays.into_iter().for_each(|ray| self.push(ray));
     }
+}
+
+#[inline(always)]
+fn same_bits([a, b, c]: [f32; 3], [x, y, z]: [f32; 3]) -> bool {
+    a.to_bits() == x.to_bits() && b.to_bits() == y.to_bits() && c.to_bits() == z.to_bits()
 }
 
 /// A ray per lane, made ready for traversal: cleaned as [`Ray`] says, with reciprocals.
@@ -226,6 +241,23 @@ impl<F: Float> Packet<F> {
     #[inline(always)]
     pub(crate) fn only(&self, mask: F::Mask) -> Self {
         Self { t_min: F::select(mask, self.t_min, F::splat(Ray::NONE.t_min)), ..*self }
+    }
+}
+
+impl Packet<f32> {
+    /// The ray in every lane.
+    #[inline(always)]
+    pub(crate) fn splat<F: Float>(&self) -> Packet<F> {
+        let all = |v: Vec3<f32>| Vec3::splat([v.x, v.y, v.z]);
+        Packet {
+            org: all(self.org),
+            dir: all(self.dir),
+            inv_dir: all(self.inv_dir),
+            inv_dir_far: all(self.inv_dir_far),
+            t_min: F::splat(self.t_min),
+            t_max: F::splat(self.t_max),
+            valid: F::Mask::splat(self.valid),
+        }
     }
 }
 

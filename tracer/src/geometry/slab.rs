@@ -18,6 +18,18 @@ impl Near {
         Self([(octant & 1) << 2, 1 | (octant >> 1 & 1) << 2, 2 | (octant >> 2 & 1) << 2])
     }
 
+    /// Whether the upper plane of an axis is the near one.
+    #[inline(always)]
+    pub(crate) fn is_upper(self, axis: usize) -> bool {
+        self.0[axis] & 4 != 0
+    }
+
+    /// Per axis 3 where the upper plane is the near one, else 0: what separates lower and upper planes in a wide node.
+    #[inline(always)]
+    pub(crate) fn upper(self) -> [usize; 3] {
+        [0, 1, 2].map(|axis| if self.is_upper(axis) { 3 } else { 0 })
+    }
+
     /// Near and far plane of an axis, from `min x y z _ max x y z _`.
     #[inline(always)]
     fn planes(self, planes: &[f32; 8], axis: usize) -> (f32, f32) {
@@ -93,13 +105,24 @@ pub(crate) fn interval<F: Float, O: Origin<F>>(
     let (near_x, far_x) = near.planes(planes, 0);
     let (near_y, far_y) = near.planes(planes, 1);
     let (near_z, far_z) = near.planes(planes, 2);
-    let x = origin.to_plane(ray, near_x, 0) * ray.inv_dir.x;
-    let y = origin.to_plane(ray, near_y, 1) * ray.inv_dir.y;
-    let z = origin.to_plane(ray, near_z, 2) * ray.inv_dir.z;
-    let t_near = x.max(y).max(z.max(from));
-    let x = origin.to_plane(ray, far_x, 0) * ray.inv_dir_far.x;
-    let y = origin.to_plane(ray, far_y, 1) * ray.inv_dir_far.y;
-    let z = origin.to_plane(ray, far_z, 2) * ray.inv_dir_far.z;
-    let t_far = x.min(y).min(z.min(to));
+    let to_near = Vec3 {
+        x: origin.to_plane(ray, near_x, 0),
+        y: origin.to_plane(ray, near_y, 1),
+        z: origin.to_plane(ray, near_z, 2),
+    };
+    let to_far = Vec3 {
+        x: origin.to_plane(ray, far_x, 0),
+        y: origin.to_plane(ray, far_y, 1),
+        z: origin.to_plane(ray, far_z, 2),
+    };
+    between(to_near, to_far, ray, from, to)
+}
+
+/// [`interval`] from what lies between origin and planes.
+#[inline(always)]
+pub(crate) fn between<F: Float>(to_near: Vec3<F>, to_far: Vec3<F>, ray: &Packet<F>, from: F, to: F) -> (F, F) {
+    let (near, far) = (to_near * ray.inv_dir, to_far * ray.inv_dir_far);
+    let t_near = near.x.max(near.y).max(near.z.max(from));
+    let t_far = far.x.min(far.y).min(far.z.min(to));
     (t_near, t_far)
 }

@@ -51,6 +51,18 @@ impl<F: Float> Vec3<F> {
         Self { x: self.y * o.z - self.z * o.y, y: self.z * o.x - self.x * o.z, z: self.x * o.y - self.y * o.x }
     }
 
+    /// The smaller of each coordinate: see [`Vector::min`](simd::Vector::min).
+    #[inline(always)]
+    pub fn min(self, o: Self) -> Self {
+        Self { x: self.x.min(o.x), y: self.y.min(o.y), z: self.z.min(o.z) }
+    }
+
+    /// The larger of each coordinate: see [`Vector::max`](simd::Vector::max).
+    #[inline(always)]
+    pub fn max(self, o: Self) -> Self {
+        Self { x: self.x.max(o.x), y: self.y.max(o.y), z: self.z.max(o.z) }
+    }
+
     /// Each coordinate times the lane's number.
     #[inline(always)]
     pub fn scale(self, s: F) -> Self {

@@ -1,9 +1,11 @@
 //! Ways of finding hits, all behind [`Method`]: rays in, hits out, the same bits from every one of them.
 
 mod packet;
+mod single;
 
 pub use crate::lanes::Width;
 pub use packet::{Packet, SharedOrigin, SlabForm};
+pub use single::{Arity, Single, Wide};
 
 use crate::Error;
 use crate::geometry::{HitBatch, RayBatch};

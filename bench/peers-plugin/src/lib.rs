@@ -1,0 +1,212 @@
+//! `tracer` behind a C interface of four functions: build, name a method, trace a range of rays, free. A harness loads it beside
+//! plugins of other tracers and measures all of them on the same rays, in turn, in one run.
+//!
+//! `rt_build` takes a specification: `wide4`, `wide8`, `wide16` or `binary`, then `;level=avx2` and the like. Methods: `i` for
+//! closest hits, `o` for occlusion.
+//!
+//! ```text
+//! cargo build --release -p peers-plugin
+//! bench scenes/room.mesh -m $PWD/target/release/libpeers_plugin.so/wide8/i -R rays/room_bounce1
+//! ```
+
+use simd::Level;
+use std::ffi::{CStr, c_char, c_int, c_void};
+use std::time::Instant;
+use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
+use tracer::geometry::{HitBatch, Ray, RayBatch};
+use tracer::method::{BitVec, Context, Method, Packet, Single, Width};
+use tracer::progress::Silent;
+use tracer::scene::Mesh;
+
+/// `nv` vertices of three floats, `nt` triangles of three indices.
+#[repr(C)]
+pub struct RtMesh {
+    v: *const f32,
+    nv: u32,
+    idx: *const u32,
+    nt: u32,
+}
+
+/// `n` rays of eight floats: origin, direction, interval; and the same as arrays, one for each of the eight.
+#[repr(C)]
+pub struct RtRays {
+    aos: *const [f32; 8],
+    soa: [*const f32; 8],
+    n: usize,
+}
+
+/// What a build cost.
+#[repr(C)]
+pub struct RtBuildInfo {
+    build_s: f64,
+    bytes_final: f64,
+    bytes_peak: f64,
+}
+
+enum Tree {
+    Binary(Bvh),
+    Wide4(WideBvh<4>),
+    Wide8(WideBvh<8>),
+    Wide16(WideBvh<16>),
+}
+
+/// A tree and the level it is traced at.
+pub struct Tracer {
+    tree: Tree,
+    level: Level,
+}
+
+impl Tracer {
+    fn with_method(&self, run: impl FnOnce(&dyn Method)) {
+        let level = self.level;
+        match &self.tree {
+            Tree::Binary(bvh) => run(&Packet::new(bvh, level, Width::Auto)),
+            Tree::Wide4(bvh) => run(&Single::new(bvh, level)),
+            Tree::Wide8(bvh) => run(&Single::new(bvh, level)),
+            Tree::Wide16(bvh) => run(&Single::new(bvh, level)),
+        }
+    }
+}
+
+fn build(spec: &str, mesh: &Mesh) -> Result<Tracer, String> {
+    let mut words = spec.split(';');
+    let kind = words.next().unwrap_or_default();
+    let (mut level, mut collapse, mut config) =
+        (Level::best(), CollapseConfig::default(), tracer::bvh::build::binned::Config::default());
+    for word in words {
+        let (key, value) = word.split_once('=').ok_or(format!("'{word}' is not key=value"))?;
+        let number = || value.parse().map_err(|e| format!("{word}: {e}"));
+        match key {
+            "level" => level = value.parse().map_err(|e| format!("{e}"))?,
+            "node_cost" => collapse.node_cost = number()?,
+            "max_leaf" => collapse.max_leaf = number()? as usize,
+            "traversal_cost" => config.traversal_cost = number()?,
+            _ => return Err(format!("unknown key '{key}'")),
+        }
+    }
+    // The harness has threads of its own: a pool of one runs on the caller's. It can be built only once.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
+    let bvh = Bvh::build(mesh, &BuildConfig::Binned(config), &Silent).map_err(|e| e.to_string())?;
+    let tree = match kind {
+        "binary" => Tree::Binary(bvh),
+        "wide4" => Tree::Wide4(bvh.collapse(&collapse)),
+        "wide8" => Tree::Wide8(bvh.collapse(&collapse)),
+        "wide16" => Tree::Wide16(bvh.collapse(&collapse)),
+        _ => return Err(format!("unknown tree '{kind}'")),
+    };
+    Ok(Tracer { tree, level })
+}
+
+/// Builds a tree; null, and a line on the error output, when it cannot.
+///
+/// # Safety
+/// The mesh's arrays are as long as it says, `spec` ends with a zero, and `info` is there to write to.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rt_build(
+    spec: *const c_char,
+    mesh: *const RtMesh,
+    _threads: c_int,
+    info: *mut RtBuildInfo,
+) -> *mut c_void {
+    // SAFETY: as the caller promises.
+    let (spec, mesh, info) = unsafe { (CStr::from_ptr(spec), &*mesh, &mut *info) };
+    // SAFETY: as the caller promises.
+    let positions = unsafe { std::slice::from_raw_parts(mesh.v.cast::<[f32; 3]>(), mesh.nv as usize) };
+    // SAFETY: as the caller promises.
+    let triangles = unsafe { std::slice::from_raw_parts(mesh.idx.cast::<[u32; 3]>(), mesh.nt as usize) };
+    let mesh = Mesh { positions: positions.to_vec(), triangles: triangles.to_vec(), ..Mesh::default() };
+    let clock = Instant::now();
+    match build(&spec.to_string_lossy(), &mesh) {
+        Ok(tracer) => {
+            info.build_s = clock.elapsed().as_secs_f64();
+            info.bytes_final = match &tracer.tree {
+                Tree::Binary(bvh) => bvh.stats().bytes,
+                Tree::Wide4(bvh) => bvh.bytes(),
+                Tree::Wide8(bvh) => bvh.bytes(),
+                Tree::Wide16(bvh) => bvh.bytes(),
+            } as f64;
+            Box::into_raw(Box::new(tracer)).cast()
+        }
+        Err(error) => {
+            eprintln!("peers-plugin: {error}");
+            std::ptr::null_mut()
+        }
+    }
+}
+
+/// # Safety
+/// `tracer` comes from [`rt_build`] and is not used afterwards.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rt_free(tracer: *mut c_void) {
+    // SAFETY: as the caller promises.
+    drop(unsafe { Box::from_raw(tracer.cast::<Tracer>()) });
+}
+
+/// 0 for closest hits, 1 for occlusion, -1 for what there is not.
+///
+/// # Safety
+/// `name` ends with a zero.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rt_method(_tracer: *mut c_void, name: *const c_char) -> c_int {
+    // SAFETY: as the caller promises.
+    match unsafe { CStr::from_ptr(name) }.to_bytes() {
+        b"i" => 0,
+        b"o" => 1,
+        _ => -1,
+    }
+}
+
+/// Traces the rays from `begin` to `end`: distance and triangle of each, the ray's own end and `u32::MAX` where there is none.
+///
+/// # Safety
+/// `tracer` comes from [`rt_build`], the arrays are as long as `rays` says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rt_trace(
+    tracer: *mut c_void,
+    method: c_int,
+    rays: *const RtRays,
+    begin: usize,
+    end: usize,
+    out_t: *mut f32,
+    out_prim: *mut u32,
+) {
+    // SAFETY: as the caller promises.
+    let (tracer, rays) = unsafe { (&*tracer.cast::<Tracer>(), &*rays) };
+    // SAFETY: as the caller promises.
+    let rays = unsafe { &std::slice::from_raw_parts(rays.aos, rays.n)[begin..end] };
+    // SAFETY: as the caller promises.
+    let (t, primitive) = unsafe {
+        (
+            std::slice::from_raw_parts_mut(out_t.add(begin), rays.len()),
+            std::slice::from_raw_parts_mut(out_prim.add(begin), rays.len()),
+        )
+    };
+    // A few at a time, so that their copies stay in the cache.
+    const AT_ONCE: usize = 4096;
+    let (mut batch, mut hits, mut occluded) = (RayBatch::new(), HitBatch::new(), BitVec::new());
+    let mut cx = Context::default();
+    tracer.with_method(|find| {
+        for (i, rays) in rays.chunks(AT_ONCE).enumerate() {
+            let (t, primitive) = (&mut t[i * AT_ONCE..], &mut primitive[i * AT_ONCE..]);
+            batch.clear();
+            for &[x, y, z, dx, dy, dz, t_min, t_max] in rays {
+                batch.push(Ray { org: [x, y, z], t_min, dir: [dx, dy, dz], t_max });
+            }
+            if method == 0 {
+                if find.closest(&batch, &mut hits, &mut cx).is_err() {
+                    return;
+                }
+                for (i, hit) in hits.iter().enumerate() {
+                    (t[i], primitive[i]) = (if hit.is_miss() { rays[i][7] } else { hit.t }, hit.primitive);
+                }
+            } else {
+                if find.any(&batch, &mut occluded, &mut cx).is_err() {
+                    return;
+                }
+                for (i, ray) in rays.iter().enumerate() {
+                    (t[i], primitive[i]) = (ray[7], if occluded.get(i) { 0 } else { u32::MAX });
+                }
+            }
+        }
+    });
+}

@@ -1,0 +1,286 @@
+//! From a binary tree to a wide one: which inner nodes to leave out, and which subtrees to make leaves, so that the surface area
+//! heuristic's cost of the whole is least (Ylitie, Karras and Laine 2017, section 3.1).
+
+use super::wide::GROUP;
+use super::{Bvh, Child, Node, WideBvh, WideNode};
+use crate::geometry::{Aabb, Triangle, TriangleGroup};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// What collapsing weighs against each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CollapseConfig {
+    /// Cost of a node, when that of a group of triangles is 1.
+    pub node_cost: f32,
+    /// Most triangles in a leaf: at most four times [`Child::MAX_GROUPS`].
+    pub max_leaf: usize,
+}
+
+impl Default for CollapseConfig {
+    fn default() -> Self {
+        Self { node_cost: 1.0, max_leaf: 2 * GROUP }
+    }
+}
+
+/// What becomes of a node of the binary tree.
+#[derive(Clone, Copy, PartialEq)]
+enum Fate {
+    Leaf,
+    Node,
+}
+
+/// Costs of a subtree.
+#[derive(Clone, Copy)]
+struct Best<const N: usize> {
+    /// `cost[i]`: as at most `i + 1` children of a wide node above it.
+    cost: [f32; N],
+    /// `left[i]`: how many of these the first child gets; 0 where fewer cost no more.
+    left: [u8; N],
+    fate: Fate,
+}
+
+impl Bvh {
+    /// The wide tree with the least cost that leaves out nodes of this one.
+    #[must_use]
+    pub fn collapse<const N: usize>(&self, config: &CollapseConfig) -> WideBvh<N> {
+        const { assert!(N == 4 || N == 8 || N == 16, "wide nodes have 4, 8 or 16 children") }
+        let mut wide = WideBvh { nodes: Vec::new(), groups: Vec::new(), triangles: self.triangles.len(), depth: 0 };
+        if self.nodes.is_empty() {
+            return wide;
+        }
+        let nodes = &*self.in_twos();
+        let ranges = ranges(nodes);
+        let best = costs::<N>(nodes, config, &ranges);
+        wide.nodes.push(WideNode::EMPTY);
+        let emit = Emit { nodes, triangles: &self.triangles, best: &best, ranges: &ranges };
+        // Even when the whole tree is one leaf there is a node above it.
+        let mut todo = vec![(0, 0, 1)];
+        let mut roots = Vec::with_capacity(N);
+        while let Some((at, binary, depth)) = todo.pop() {
+            wide.depth = wide.depth.max(depth);
+            roots.clear();
+            if best[binary].fate == Fate::Leaf {
+                roots.push(binary);
+            } else {
+                emit.open(binary, N, &mut roots);
+            }
+            for (i, &root) in roots.iter().enumerate() {
+                let child = if best[root].fate == Fate::Leaf {
+                    emit.leaf(root, &mut wide.groups)
+                } else {
+                    wide.nodes.push(WideNode::EMPTY);
+                    todo.push((wide.nodes.len() - 1, root, depth + 1));
+                    Child::node(wide.nodes.len() - 1)
+                };
+                wide.nodes[at].set(i, &nodes[root].bounds(), child);
+            }
+        }
+        wide
+    }
+
+    /// The nodes, with at most two children each: where there are more ([insertion](super::build::insertion) makes such), all but the
+    /// first get a node of their own above them.
+    fn in_twos(&self) -> Cow<'_, [Node]> {
+        // The box of the new node, and where the subtree ends, by the node before which it comes.
+        let mut new = BTreeMap::new();
+        let mut siblings = Vec::new();
+        for (i, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.triangles().1 == 0) {
+            let end = node.skip() as usize;
+            siblings.clear();
+            let mut child = i + 1;
+            while child < end {
+                siblings.push(child);
+                child = self.nodes[child].skip() as usize;
+            }
+            let mut bounds = Aabb::EMPTY;
+            for (k, &child) in siblings.iter().enumerate().skip(1).rev() {
+                bounds = bounds.union(&self.nodes[child].bounds());
+                if k + 1 < siblings.len() {
+                    new.insert(child, (bounds, end));
+                }
+            }
+        }
+        if new.is_empty() {
+            return Cow::Borrowed(&self.nodes);
+        }
+        let mut place = Vec::with_capacity(self.nodes.len() + 1);
+        let mut number = 0;
+        for i in 0..=self.nodes.len() {
+            place.push(number);
+            number += 1 + u32::from(new.contains_key(&i));
+        }
+        let mut nodes = Vec::with_capacity(self.nodes.len() + new.len());
+        for (i, node) in self.nodes.iter().enumerate() {
+            if let Some((bounds, end)) = new.get(&i) {
+                nodes.push(Node::inner(bounds, place[*end]));
+            }
+            nodes.push(node.with_skip(place[node.skip() as usize]));
+        }
+        Cow::Owned(nodes)
+    }
+}
+
+/// First triangle and number of triangles of each subtree.
+fn ranges(nodes: &[Node]) -> Vec<(u32, u32)> {
+    let mut ranges = vec![(0, 0); nodes.len()];
+    for (i, node) in nodes.iter().enumerate().rev() {
+        ranges[i] = node.triangles();
+        if ranges[i].1 == 0 {
+            let [a, b] = children(nodes, i);
+            ranges[i] = (ranges[a].0, ranges[a].1 + ranges[b].1);
+        }
+    }
+    ranges
+}
+
+fn costs<const N: usize>(nodes: &[Node], config: &CollapseConfig, ranges: &[(u32, u32)]) -> Vec<Best<N>> {
+    let mut best = vec![Best { cost: [0.0; N], left: [0; N], fate: Fate::Leaf }; nodes.len()];
+    let max_leaf = config.max_leaf.min(GROUP * Child::MAX_GROUPS);
+    for (i, node) in nodes.iter().enumerate().rev() {
+        let (area, number) = (node.bounds().half_area(), ranges[i].1 as usize);
+        let groups = number.div_ceil(GROUP) as f32;
+        let mut this = Best { cost: [area * groups; N], left: [0; N], fate: Fate::Leaf };
+        if node.triangles().1 == 0 {
+            let [a, b] = children(nodes, i).map(|child| &best[child].cost);
+            // As `k + 1` children: from those of both sides.
+            for k in 1..N {
+                let (mut cost, mut left) = (f32::INFINITY, 1);
+                for l in 0..k {
+                    let sum = a[l] + b[k - 1 - l];
+                    if sum < cost {
+                        (cost, left) = (sum, l + 1);
+                    }
+                }
+                (this.cost[k], this.left[k]) = (cost, left as u8);
+            }
+            let as_node = this.cost[N - 1] + area * config.node_cost;
+            if number > max_leaf || as_node < this.cost[0] {
+                this.cost[0] = as_node;
+                this.fate = Fate::Node;
+            }
+            for k in 1..N {
+                if this.cost[k - 1] <= this.cost[k] {
+                    (this.cost[k], this.left[k]) = (this.cost[k - 1], 0);
+                }
+            }
+        }
+        best[i] = this;
+    }
+    best
+}
+
+/// The two children of an inner node.
+fn children(nodes: &[Node], i: usize) -> [usize; 2] {
+    [i + 1, nodes[i + 1].skip() as usize]
+}
+
+struct Emit<'a, const N: usize> {
+    nodes: &'a [Node],
+    triangles: &'a [Triangle],
+    best: &'a [Best<N>],
+    ranges: &'a [(u32, u32)],
+}
+
+impl<const N: usize> Emit<'_, N> {
+    /// The subtrees that become the at most `room` children of the wide node made of node `i`.
+    fn open(&self, i: usize, room: usize, roots: &mut Vec<usize>) {
+        let [a, b] = children(self.nodes, i);
+        let left = (0..room).rev().map(|k| (k, self.best[i].left[k] as usize)).find(|&(_, left)| left > 0);
+        // A node that stays has at least two children.
+        let (k, left) = left.unwrap_or((1, 1));
+        for (child, room) in [(a, left), (b, k + 1 - left)] {
+            // One child, or where fewer cost no more: the subtree whole.
+            let whole = (0..room).all(|k| self.best[child].left[k] == 0);
+            if room == 1 || whole { roots.push(child) } else { self.open(child, room, roots) }
+        }
+    }
+
+    fn leaf(&self, i: usize, groups: &mut Vec<TriangleGroup<GROUP>>) -> Child {
+        let (first, number) = self.ranges[i];
+        let triangles = &self.triangles[first as usize..][..number as usize];
+        let at = groups.len();
+        groups.extend(triangles.chunks(GROUP).map(TriangleGroup::new));
+        Child::leaf(at, groups.len() - at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::BuildConfig;
+    use crate::geometry::Hit;
+    use crate::progress::Silent;
+    use crate::scene::builtin;
+
+    fn tree(spec: &str, config: &BuildConfig) -> Bvh {
+        let scene = builtin(spec).expect("a built-in scene").expect("a possible size");
+        Bvh::build(&scene.mesh, config, &Silent).expect("a valid mesh")
+    }
+
+    /// Every triangle is in one leaf, every box holds what is below it, and no way down is longer than it says.
+    fn check<const N: usize>(bvh: &Bvh, config: &CollapseConfig) {
+        let wide = bvh.collapse::<N>(config);
+        let (mut ids, mut todo, mut nodes) = (Vec::new(), vec![(0, 1)], 0);
+        while let Some((i, depth)) = todo.pop() {
+            assert!(depth <= wide.depth);
+            nodes += 1;
+            let node = &wide.nodes[i];
+            let bounds = |n: &WideNode<N>, k: usize| Aabb {
+                min: [0, 1, 2].map(|axis| n.planes[axis][k]),
+                max: [3, 4, 5].map(|axis| n.planes[axis][k]),
+            };
+            for (k, &child) in node.children.iter().enumerate().filter(|(_, child)| **child != Child::NONE) {
+                let mut below = Aabb::EMPTY;
+                if child.is_leaf() {
+                    let (first, end) = child.groups();
+                    for group in &wide.groups[first..end] {
+                        for lane in (0..GROUP).filter(|&lane| group.id[lane] != Hit::NO_PRIMITIVE) {
+                            ids.push(group.id[lane]);
+                            let of = |v: &[[f32; GROUP]; 3]| [v[0][lane], v[1][lane], v[2][lane]];
+                            let (v0, e1, e2) = (of(&group.v0), of(&group.e1), of(&group.e2));
+                            let at = |e: [f32; 3]| [v0[0] + e[0], v0[1] + e[1], v0[2] + e[2]];
+                            below = below.union(&Aabb::of_points([v0, at(e1), at(e2)]));
+                        }
+                    }
+                } else {
+                    let inner = &wide.nodes[child.index()];
+                    let used = (0..N).filter(|&k| inner.children[k] != Child::NONE);
+                    below = used.fold(below, |b, k| b.union(&bounds(inner, k)));
+                    todo.push((child.index(), depth + 1));
+                }
+                assert_eq!(below, bounds(node, k), "the box of child {k} of node {i}");
+            }
+        }
+        assert_eq!(nodes, wide.nodes.len(), "every node is reached once");
+        ids.sort_unstable();
+        let mut expected: Vec<u32> = bvh.triangles.iter().map(|t| t.id).collect();
+        expected.sort_unstable();
+        assert!(ids == expected, "every triangle once");
+    }
+
+    #[test]
+    fn wide_trees_hold_what_binary_trees_hold() {
+        let builders = [BuildConfig::default(), BuildConfig::insertion(7)];
+        for (spec, builder) in [("balls:1", 0), ("rings:1", 1), ("tree:3", 0), ("tree:3", 1)] {
+            let bvh = tree(spec, &builders[builder]);
+            for node_cost in [0.0, 0.3, 1.0, 100.0] {
+                for max_leaf in [0, 4, 1000] {
+                    let config = CollapseConfig { node_cost, max_leaf };
+                    check::<4>(&bvh, &config);
+                    check::<8>(&bvh, &config);
+                    check::<16>(&bvh, &config);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_triangle_is_a_leaf_below_a_node() {
+        let mut bvh = tree("balls:1", &BuildConfig::default());
+        let bounds = bvh.triangles[0].bounds();
+        bvh.triangles.truncate(1);
+        bvh.nodes = vec![Node::leaf(&bounds, 1, 0, 1)];
+        check::<8>(&bvh, &CollapseConfig::default());
+        assert_eq!(bvh.collapse::<8>(&CollapseConfig::default()).nodes.len(), 1);
+    }
+}
