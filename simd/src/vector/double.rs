@@ -34,7 +34,8 @@ pub trait Double:
     fn trunc(self) -> Self;
     /// Nearest integer, ties to even; keeps the sign of zero.
     fn round(self) -> Self;
-    /// `self * b + c`, relaxed: rounded once where the level has the instruction (AVX2, AVX-512, NEON), else twice.
+    /// `self * b + c`, relaxed: rounded once where the level has the instruction (AVX2, AVX-512, NEON) for four lanes and eight, else
+    /// twice; two lanes and one are rounded twice at every level.
     #[doc(alias("fma", "madd"))]
     fn mul_add(self, b: Self, c: Self) -> Self;
     /// `self * b - c`, relaxed as [`Double::mul_add`].
