@@ -49,7 +49,7 @@ pub trait Double:
     fn neg_mul_sub(self, b: Self, c: Self) -> Self {
         (-self).mul_sub(b, c)
     }
-    /// `self * b + c`, rounded once at every level; slow where the level lacks the instruction.
+    /// `self * b + c`, rounded once at every level; slow where the level lacks the instruction, and for two lanes.
     #[doc(alias("fma"))]
     fn mul_add_exact(self, b: Self, c: Self) -> Self;
     /// Sum of the lanes, added in the order of [`Vector::reduce_min`].

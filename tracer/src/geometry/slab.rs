@@ -27,7 +27,9 @@ impl Near {
     /// Per axis 3 where the upper plane is the near one, else 0: what separates lower and upper planes in a wide node.
     #[inline(always)]
     pub(crate) fn upper(self) -> [usize; 3] {
-        [0, 1, 2].map(|axis| if self.is_upper(axis) { 3 } else { 0 })
+        // Not `map`: it is not always inlined.
+        let upper = |axis| 3 * usize::from(self.is_upper(axis));
+        [upper(0), upper(1), upper(2)]
     }
 
     /// Near and far plane of an axis, from `min x y z _ max x y z _`.

@@ -8,8 +8,10 @@ pub use packet::{Packet, SharedOrigin, SlabForm};
 pub use single::{Arity, Single, Wide};
 
 use crate::Error;
-use crate::geometry::{HitBatch, RayBatch};
+use crate::geometry::{HitBatch, RayBatch, RayBlock};
+use crate::parallel::portions;
 use crate::stats::Counters;
+use std::ops::Add;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A way of finding hits.
@@ -52,6 +54,26 @@ impl Context<'_> {
         let cancelled = self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
         if cancelled { Err(Error::Cancelled) } else { Ok(()) }
     }
+}
+
+/// Runs a kernel on portions of the rays, on all threads; whether to count is its first argument, and what it counted is added to the
+/// context's.
+fn in_portions<B: Send>(
+    rays: &RayBatch,
+    results: &mut [B],
+    cx: &mut Context<'_>,
+    kernel: impl Fn(bool, &[RayBlock], &mut [B]) -> Counters + Sync,
+) -> Result<(), Error> {
+    let count = cx.counters.is_some();
+    let portion = |_, rays: &[RayBlock], results: &mut [B]| {
+        cx.check()?;
+        Ok(kernel(count, rays, results))
+    };
+    let done = portions(rays.blocks(), results, portion, Counters::default, Counters::add)?;
+    if let Some(counters) = &mut cx.counters {
+        *counters = counters.add(done);
+    }
+    Ok(())
 }
 
 /// One bit per ray, sixteen to a word as rays are sixteen to a block.

@@ -1,16 +1,14 @@
 //! Packets of rays through the skip-pointer tree: Geimer & Müller 2003, section 3.3.
 
-use super::{BitVec, Context, Method};
+use super::{BitVec, Context, Method, in_portions};
 use crate::Error;
 use crate::bvh::Bvh;
 use crate::geometry::moller_trumbore::{self, Candidate};
 use crate::geometry::slab::{self, Near, Origin, PerRay, Shared};
 use crate::geometry::{Hit, HitBatch, HitBlock, Packet as Rays, RayBatch, RayBlock};
 use crate::lanes::{self, Lanes, Width};
-use crate::parallel::portions;
 use crate::stats::{Count, Counters, NoCount};
 use simd::{Float, Isa, Level, Mask, Vector};
-use std::ops::Add;
 
 /// How a packet's box test becomes one answer. Both find the same hits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -83,24 +81,17 @@ impl<'a> Packet<'a> {
     }
 
     fn find<Q: Query>(&self, rays: &RayBatch, results: &mut [Q::Block], cx: &mut Context<'_>) -> Result<(), Error> {
-        let count = cx.counters.is_some();
         let origin = self.origin(rays);
-        let portion = |_, rays: &[RayBlock], results: &mut [Q::Block]| {
-            cx.check()?;
+        in_portions(rays, results, cx, |count, rays, results| {
             let Self { bvh, level, width, form, .. } = *self;
-            Ok(if count {
+            if count {
                 // The work is the same at every level.
                 let count = Counters::default();
                 lanes::run_scalar(width, Trace::<Q, _> { bvh, form, origin, rays, results, count })
             } else {
                 lanes::run(level, width, Trace::<Q, _> { bvh, form, origin, rays, results, count: NoCount })
-            })
-        };
-        let done = portions(rays.blocks(), results, portion, Counters::default, Counters::add)?;
-        if let Some(counters) = &mut cx.counters {
-            *counters = counters.add(done);
-        }
-        Ok(())
+            }
+        })
     }
 }
 

@@ -1,15 +1,13 @@
 //! One ray at a time through a wide tree, against all children of a node at once, nearest first (Wald, Benthin and Boulos 2008).
 
-use super::{BitVec, Context, Method};
+use super::{BitVec, Context, Method, in_portions};
 use crate::Error;
 use crate::bvh::{Child, WideBvh, WideNode};
 use crate::geometry::moller_trumbore;
 use crate::geometry::slab::{self, Near};
 use crate::geometry::{Hit, HitBatch, HitBlock, Packet as Rays, RayBatch, RayBlock, Vec3};
-use crate::parallel::portions;
 use crate::stats::{Count, Counters, NoCount};
-use simd::{Block, Float, Kernel, Level, Mask, Simd, Vector};
-use std::ops::Add;
+use simd::{Block, Float, Kernel, Level, Mask, Simd};
 
 /// Single rays through a [`WideBvh`].
 #[derive(Debug, Clone, Copy)]
@@ -48,22 +46,15 @@ where
     }
 
     fn find<Q: Query>(&self, rays: &RayBatch, results: &mut [Q::Block], cx: &mut Context<'_>) -> Result<(), Error> {
-        let count = cx.counters.is_some();
-        let portion = |_, rays: &[RayBlock], results: &mut [Q::Block]| {
-            cx.check()?;
+        in_portions(rays, results, cx, |count, rays, results| {
             let bvh = self.bvh;
-            Ok(if count {
-                let count = Counters::default();
-                Level::run_scalar(Trace::<Q, _, N> { bvh, rays, results, count })
+            if count {
+                // The work is the same at every level.
+                Level::run_scalar(Trace::<Q, _, N> { bvh, rays, results, count: Counters::default() })
             } else {
                 self.level.run(Trace::<Q, _, N> { bvh, rays, results, count: NoCount })
-            })
-        };
-        let done = portions(rays.blocks(), results, portion, Counters::default, Counters::add)?;
-        if let Some(counters) = &mut cx.counters {
-            *counters = counters.add(done);
-        }
-        Ok(())
+            }
+        })
     }
 }
 
@@ -118,7 +109,8 @@ where
                 let lane = rest.trailing_zeros() as usize % 16;
                 rest &= rest - 1;
                 self.count.packet();
-                let walk = Walk { bvh: self.bvh, ray: ready.ray(lane), near: ready.near(lane) };
+                let near = ready.near(lane);
+                let walk = Walk { bvh: self.bvh, ray: ready.ray(lane), near, upper: near.upper() };
                 walk.run::<Arity<N>, S, Q, C>(&mut stack, lane, &mut found, &mut self.count);
             }
             *results = found;
@@ -183,6 +175,8 @@ struct Walk<'a, const N: usize> {
     bvh: &'a WideBvh<N>,
     ray: Rays<f32>,
     near: Near,
+    /// [`Near::upper`] of it.
+    upper: [usize; 3],
 }
 
 /// A child with the distance where the ray enters its box above it: entries compare as distances do, for none is negative.
@@ -200,103 +194,116 @@ impl<const N: usize> Walk<'_, N> {
         found: &mut Q::Block,
         count: &mut C,
     ) {
-        let near = self.near.upper();
-        let ray = self.ray.splat::<W::Lanes<S>>();
-        let triangle_ray = self.ray.splat::<S::Float4>();
+        let (ray, triangle_ray) = (self.ray.splat::<W::Lanes<S>>(), self.ray.splat::<S::Float4>());
         let mut best = Hit { t: self.ray.t_max, ..Hit::MISS };
         let mut free = 0;
         let mut child = Child::node(0);
         loop {
-            if !child.is_leaf() {
-                let Some(node) = self.bvh.nodes.get(child.index()) else { break };
-                count.box_test();
-                let (t_near, mask) = meet(node, near, &ray, best.t);
-                let mut bits = mask.bitmask();
-                if bits != 0 {
-                    let t_near = t_near.to_block();
-                    let mut next = || {
-                        let i = bits.trailing_zeros() as usize % 16;
-                        bits &= bits - 1;
-                        let child = node.children[i % N];
-                        self.bvh.prefetch(child);
-                        (bits != 0, entry(t_near.0[i], child))
-                    };
-                    let (more, first) = next();
-                    child = Child::from_bits(first as u32);
-                    if !more {
-                        continue;
-                    }
-                    let (more, second) = next();
-                    if free + N > stack.len() {
-                        break;
-                    }
-                    if !more {
-                        stack[free] = first.max(second);
-                        free += 1;
-                        child = Child::from_bits(first.min(second) as u32);
-                        continue;
-                    }
-                    let bottom = free;
-                    stack[free] = first.max(second);
-                    stack[free + 1] = first.min(second);
-                    free += 2;
-                    loop {
-                        let (more, another) = next();
-                        // Sorted, the nearest on top.
-                        let mut at = free;
-                        while at > bottom && stack[at - 1] < another {
-                            stack[at] = stack[at - 1];
-                            at -= 1;
-                        }
-                        stack[at] = another;
-                        free += 1;
-                        if !more {
-                            break;
-                        }
-                    }
-                    free -= 1;
-                    child = Child::from_bits(stack[free] as u32);
-                    continue;
+            if child.is_leaf() {
+                self.leaf(child, &triangle_ray, &mut best, count);
+                if !Q::CLOSEST && !best.is_miss() {
+                    break;
                 }
             } else {
-                let (first, end) = child.groups();
-                for group in &self.bvh.groups[first..end] {
-                    count.triangle_test();
-                    let reach = Rays { t_max: S::Float4::splat(best.t), ..triangle_ray };
-                    if let Some(hit) = moller_trumbore::intersect_group(group, &reach, self.near) {
-                        let mut bits = hit.mask.bitmask();
-                        if bits == 0 {
-                            continue;
-                        }
-                        count.triangle_hit();
-                        if !Q::CLOSEST {
-                            Q::store(found, lane, &best);
-                            return;
-                        }
-                        let (t, u, v) = (hit.t.to_block(), hit.u.to_block(), hit.v.to_block());
-                        while bits != 0 {
-                            let i = bits.trailing_zeros() as usize % 4;
-                            bits &= bits - 1;
-                            let primitive = group.id[i];
-                            if t.0[i] < best.t || (t.0[i] == best.t && primitive < best.primitive) {
-                                best = Hit { t: t.0[i], u: u.0[i], v: v.0[i], primitive };
-                            }
-                        }
-                    }
+                // Only an empty tree has no root.
+                let Some(node) = self.bvh.nodes.get(child.index()) else { break };
+                count.box_test();
+                if let Some(nearest) = self.descend(node, &ray, best.t, stack, &mut free) {
+                    child = nearest;
+                    continue;
                 }
             }
-            loop {
+            // What the ray enters behind its hit so far is passed over.
+            child = loop {
                 if free == 0 {
-                    if Q::CLOSEST && !best.is_miss() {
+                    if !best.is_miss() {
                         Q::store(found, lane, &best);
                     }
                     return;
                 }
                 free -= 1;
-                let entry = stack[free];
-                if f32::from_bits((entry >> 32) as u32) <= best.t {
-                    child = Child::from_bits(entry as u32);
-                    break;
+                if f32::from_bits((stack[free] >> 32) as u32) <= best.t {
+                    break Child::from_bits(stack[free] as u32);
+                }
+            };
+        }
+        if !best.is_miss() {
+            Q::store(found, lane, &best);
+        }
+    }
+
+    /// The nearest of the children that the ray meets; the others go to the stack, the nearer above the farther.
+    #[inline(always)]
+    fn descend<F: Float>(
+        &self,
+        node: &WideNode<N>,
+        ray: &Rays<F>,
+        reach: f32,
+        stack: &mut [u64],
+        free: &mut usize,
+    ) -> Option<Child> {
+        let (t_near, mask) = meet(node, self.upper, ray, reach);
+        let mut bits = mask.bitmask();
+        if bits == 0 {
+            return None;
+        }
+        let t_near = t_near.to_block();
+        let mut next = || {
+            let i = bits.trailing_zeros() as usize % 16;
+            bits &= bits - 1;
+            let child = node.children[i % N];
+            self.bvh.prefetch(child);
+            (bits != 0, entry(t_near.0[i], child))
+        };
+        // Most often one child or two.
+        let (more, first) = next();
+        if !more {
+            return Some(Child::from_bits(first as u32));
+        }
+        assert!(*free + N <= stack.len(), "the stack has room for the children of every node on the way");
+        let (mut more, second) = next();
+        let bottom = *free;
+        stack[*free] = first.max(second);
+        let mut nearest = first.min(second);
+        while more {
+            let another;
+            (more, another) = next();
+            *free += 1;
+            let farther = nearest.max(another);
+            nearest = nearest.min(another);
+            // Sorted: the others move up.
+            let mut at = *free;
+            while at > bottom && stack[at - 1] < farther {
+                stack[at] = stack[at - 1];
+                at -= 1;
+            }
+            stack[at] = farther;
+        }
+        *free += 1;
+        Some(Child::from_bits(nearest as u32))
+    }
+
+    /// The closest hit among the triangles of a leaf, if it is closer than what there is.
+    #[inline(always)]
+    fn leaf<F: Float, C: Count>(&self, leaf: Child, ray: &Rays<F>, best: &mut Hit, count: &mut C) {
+        let (first, end) = leaf.groups();
+        for group in &self.bvh.groups[first..end] {
+            count.triangle_test();
+            let ray = Rays { t_max: F::splat(best.t), ..*ray };
+            let Some(hit) = moller_trumbore::intersect_group(group, &ray, self.near) else { continue };
+            let mut bits = hit.mask.bitmask();
+            if bits == 0 {
+                continue;
+            }
+            count.triangle_hit();
+            let (t, u, v) = (hit.t.to_block(), hit.u.to_block(), hit.v.to_block());
+            while bits != 0 {
+                let i = bits.trailing_zeros() as usize % group.id.len();
+                bits &= bits - 1;
+                let primitive = group.id[i];
+                // At equal distance the lower id wins, whatever order the leaves are visited in.
+                if t.0[i] < best.t || (t.0[i] == best.t && primitive < best.primitive) {
+                    *best = Hit { t: t.0[i], u: u.0[i], v: v.0[i], primitive };
                 }
             }
         }

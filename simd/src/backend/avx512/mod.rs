@@ -41,6 +41,7 @@ impl Simd for Avx512 {
     type Uint16 = Uint16;
     type Bool16 = Bool16;
     type Double2 = Pair<f64>;
+    // Eight in one register would want masks in mask registers, as only sixteen 32-bit lanes have here.
     type Double4 = Double4<avx2::Doubles>;
     type Double8 = Pair<Self::Double4>;
     type Float = Float16;
