@@ -413,7 +413,7 @@ mod x86_64 {
             (TRANSPOSE, ..) => &["unpcklps", "unpckhps"],
             (COMPRESS, Isa::Sse2, _) => &["cmpps"],
             (COMPRESS, Isa::Sse42, _) | (COMPRESS, _, 4) => &["cmpps", "pshufb"],
-            (COMPRESS, Isa::Avx2, _) => &["cmpps", "permd"],
+            (COMPRESS, Isa::Avx2, _) => &["cmpps", "permps"],
             (COMPRESS, Isa::Avx512, 8) => &["cmpps", "permps"],
             (COMPRESS, ..) => &["cmpps", "compressps"],
             _ => &[],
