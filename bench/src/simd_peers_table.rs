@@ -109,7 +109,7 @@ fn directories(path: &Path) -> Result<Vec<PathBuf>, Box<dyn Error>> {
 /// Version, lines of code, and seconds of a build with its dependencies.
 fn crate_costs(name: &str, target: &Path) -> Result<(String, usize, f64), Box<dyn Error>> {
     let metadata = Command::new(env!("CARGO"))
-        .args(["metadata", "--format-version", "1", "--locked", "--offline"])
+        .args(["metadata", "--format-version", "1", "--locked"])
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .stderr(Stdio::inherit())
         .output()?;
@@ -136,7 +136,7 @@ fn crate_costs(name: &str, target: &Path) -> Result<(String, usize, f64), Box<dy
     fs::copy(target.with_file_name("Cargo.lock"), scratch.join("Cargo.lock"))?;
     let clock = Instant::now();
     let status = Command::new(env!("CARGO"))
-        .args(["build", "--quiet", "--release", "--jobs", "1", "--offline", "--target-dir", "target"])
+        .args(["build", "--quiet", "--release", "--jobs", "1", "--target-dir", "target"])
         .current_dir(&scratch)
         .status()?;
     let seconds = clock.elapsed().as_secs_f64();
