@@ -5,7 +5,7 @@ use simd::{Isa, Level};
 use tests::{Random, brute_force, real_scene};
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig};
 use tracer::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
-use tracer::method::{BitVec, Context, Method, Packet, SharedOrigin, Single, SlabForm, Width};
+use tracer::method::{Auto, BitVec, Context, Method, Packet, SharedOrigin, Single, SlabForm, Width};
 use tracer::progress::Silent;
 use tracer::render::{EyeRays, Frame, Settings, Surfaces};
 use tracer::scene::{Mesh, Scene, builtin};
@@ -75,6 +75,7 @@ fn check(name: &str, mesh: &Mesh, trees: &[(&str, &Bvh)], rays: &RayBatch, check
             check_method(&Single::<4>::new(&four, level), rays, &expected, &what(4));
             check_method(&Single::<8>::new(&eight, level), rays, &expected, &what(8));
             check_method(&Single::<16>::new(&sixteen, level), rays, &expected, &what(16));
+            check_method(&Auto::new(&eight, level), rays, &expected, &format!("{name}, {tree} tree, {level}, auto"));
         }
     }
     for threads in [2, 3] {
@@ -155,8 +156,37 @@ fn check_scene(name: &str, scene: &Scene, size: usize, number: usize, checked: u
     let eye = eye_rays(scene, size);
     assert!(eye.rays().origin().is_some());
     assert!(check(&format!("{name}, eye rays"), &scene.mesh, &trees, eye.rays(), checked) > 0);
+    check_pictures(name, scene);
     let rays = incoherent(&scene.mesh, number, 1);
     assert!(check(&format!("{name}, incoherent rays"), &scene.mesh, &trees, &rays, checked) > 0);
+}
+
+/// Rays as others generate them, by [`Auto`]: pictures row by row, of widths that blocks of sixteen and tiles do and do not
+/// divide, and from what they hit to a light.
+fn check_pictures(name: &str, scene: &Scene) {
+    let binned = Bvh::build(&scene.mesh, &BuildConfig::default(), &Silent).expect("a valid mesh");
+    let wide = binned.collapse(&CollapseConfig::default());
+    let Aabb { min, max } = scene.mesh.bounds();
+    let light: [f32; 3] = std::array::from_fn(|axis| min[axis] + [0.4, 0.55, 0.9][axis] * (max[axis] - min[axis]));
+    for (width, height) in [(64, 48), (100, 33), (75, 40)] {
+        let eye = EyeRays::new(&scene.camera_or_default(), width, height, Level::best(), Width::Auto);
+        let pixels = eye.by_rows();
+        let reference = Packet::new(&binned, Level::SCALAR, Width::One);
+        let hits = closest(&reference, &pixels);
+        let shadow: RayBatch = (pixels.iter().zip(hits.iter()).filter(|(_, hit)| !hit.is_miss()))
+            .map(|(ray, hit)| {
+                let org: [f32; 3] = std::array::from_fn(|axis| ray.org[axis] + hit.t * ray.dir[axis]);
+                let dir = std::array::from_fn(|axis| light[axis] - org[axis]);
+                Ray { t_min: 1e-4, t_max: 0.999, ..Ray::new(org, dir) }
+            })
+            .collect();
+        let shadow_hits = closest(&reference, &shadow);
+        for level in Level::available() {
+            let auto = Auto::new(&wide, level);
+            check_method(&auto, &pixels, &hits, &format!("{name}, {width} x {height} pixels, {level}"));
+            check_method(&auto, &shadow, &shadow_hits, &format!("{name}, {width} x {height} shadow rays, {level}"));
+        }
+    }
 }
 
 fn check_builtin(spec: &str) {

@@ -1,20 +1,21 @@
 //! `tracer` behind a C interface of four functions: build, name a method, trace a range of rays, free. A harness loads it beside
 //! plugins of other tracers and measures all of them on the same rays, in turn, in one run.
 //!
-//! `rt_build` takes a specification: `wide4`, `wide8`, `wide16` or `binary`, then `;level=avx2` and the like. Methods: `i` for
-//! closest hits, `o` for occlusion.
+//! `rt_build` takes a specification: `wide8` for [`Auto`]; `singlewide4`, `singlewide8`, `singlewide16` for [`Single`]; `binary`
+//! for [`Packet`]; then `;level=avx2` and the like. Methods: `i` for closest hits, `o` for occlusion.
 //!
 //! ```text
 //! cargo build --release -p peers-plugin
-//! bench scenes/room.mesh -m $PWD/target/release/libpeers_plugin.so/wide8/i -R rays/room_bounce1
+//! bench scenes/room.mesh -m $PWD/target/release/libpeers_plugin.so/wide8/i -R rays/room_bounce1 rays/room_prim_scan
 //! ```
 
 use simd::Level;
+use std::cell::Cell;
 use std::ffi::{CStr, c_char, c_int, c_void};
 use std::time::Instant;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
-use tracer::geometry::{HitBatch, Ray, RayBatch};
-use tracer::method::{BitVec, Context, Method, Packet, Single, Width};
+use tracer::geometry::{HitBatch, RayBatch};
+use tracer::method::{Auto, BitVec, Context, Limits, Method, Packet, Single, Width};
 use tracer::progress::Silent;
 use tracer::scene::Mesh;
 
@@ -43,6 +44,20 @@ pub struct RtBuildInfo {
     bytes_peak: f64,
 }
 
+/// Rays at once: their copies stay in the cache, and 64 rows of an image of 1024 columns are in one batch.
+const AT_ONCE: usize = 1 << 16;
+
+#[derive(Default)]
+struct Buffers {
+    batch: RayBatch,
+    hits: HitBatch,
+    occluded: BitVec,
+}
+
+thread_local! {
+    static BUFFERS: Cell<Buffers> = Cell::default();
+}
+
 enum Tree {
     Binary(Bvh),
     Wide4(WideBvh<4>),
@@ -54,6 +69,8 @@ enum Tree {
 pub struct Tracer {
     tree: Tree,
     level: Level,
+    single: bool,
+    limits: Limits,
 }
 
 impl Tracer {
@@ -62,6 +79,7 @@ impl Tracer {
         match &self.tree {
             Tree::Binary(bvh) => run(&Packet::new(bvh, level, Width::Auto)),
             Tree::Wide4(bvh) => run(&Single::new(bvh, level)),
+            Tree::Wide8(bvh) if !self.single => run(&Auto::new(bvh, level).with_limits(self.limits)),
             Tree::Wide8(bvh) => run(&Single::new(bvh, level)),
             Tree::Wide16(bvh) => run(&Single::new(bvh, level)),
         }
@@ -71,6 +89,8 @@ impl Tracer {
 fn build(spec: &str, mesh: &Mesh) -> Result<Tracer, String> {
     let mut words = spec.split(';');
     let kind = words.next().unwrap_or_default();
+    let (kind, single) = kind.strip_prefix("single").map_or((kind, false), |kind| (kind, true));
+    let mut limits = Limits::default();
     let (mut level, mut collapse, mut config) =
         (Level::best(), CollapseConfig::default(), tracer::bvh::build::binned::Config::default());
     for word in words {
@@ -80,6 +100,13 @@ fn build(spec: &str, mesh: &Mesh) -> Result<Tracer, String> {
             "level" => level = value.parse().map_err(|e| format!("{e}"))?,
             "node_cost" => collapse.node_cost = number()?,
             "max_leaf" => collapse.max_leaf = number()? as usize,
+            "together" => limits.together = number()?,
+            "coherent" => limits.coherent = number()?,
+            "blocks" => limits.blocks = number()? as u32,
+            "rays" => limits.rays = number()? as u32,
+            "mixed_closest" => limits.mixed_closest = number()? as u32,
+            "mixed_any" => limits.mixed_any = number()? as u32,
+            "scatter" => limits.scatter = number()?,
             "traversal_cost" => config.traversal_cost = number()?,
             _ => return Err(format!("unknown key '{key}'")),
         }
@@ -94,7 +121,7 @@ fn build(spec: &str, mesh: &Mesh) -> Result<Tracer, String> {
         "wide16" => Tree::Wide16(bvh.collapse(&collapse)),
         _ => return Err(format!("unknown tree '{kind}'")),
     };
-    Ok(Tracer { tree, level })
+    Ok(Tracer { tree, level, single, limits })
 }
 
 /// Builds a tree; null, and a line on the error output, when it cannot.
@@ -173,40 +200,47 @@ pub unsafe extern "C" fn rt_trace(
     // SAFETY: as the caller promises.
     let (tracer, rays) = unsafe { (&*tracer.cast::<Tracer>(), &*rays) };
     // SAFETY: as the caller promises.
-    let rays = unsafe { &std::slice::from_raw_parts(rays.aos, rays.n)[begin..end] };
+    let columns = rays.soa.map(|v| unsafe { &std::slice::from_raw_parts(v, rays.n)[begin..end] });
     // SAFETY: as the caller promises.
     let (t, primitive) = unsafe {
         (
-            std::slice::from_raw_parts_mut(out_t.add(begin), rays.len()),
-            std::slice::from_raw_parts_mut(out_prim.add(begin), rays.len()),
+            std::slice::from_raw_parts_mut(out_t.add(begin), end - begin),
+            std::slice::from_raw_parts_mut(out_prim.add(begin), end - begin),
         )
     };
-    // A few at a time, so that their copies stay in the cache.
-    const AT_ONCE: usize = 4096;
-    let (mut batch, mut hits, mut occluded) = (RayBatch::new(), HitBatch::new(), BitVec::new());
+    // Each thread keeps its buffers from one call to the next.
+    let Buffers { mut batch, mut hits, mut occluded } = BUFFERS.take();
     let mut cx = Context::default();
     tracer.with_method(|find| {
-        for (i, rays) in rays.chunks(AT_ONCE).enumerate() {
-            let (t, primitive) = (&mut t[i * AT_ONCE..], &mut primitive[i * AT_ONCE..]);
+        for begin in (0..t.len()).step_by(AT_ONCE) {
+            let end = t.len().min(begin + AT_ONCE);
+            let [x, y, z, dx, dy, dz, t_min, t_max] = columns.map(|v| &v[begin..end]);
+            let (t, primitive) = (&mut t[begin..end], &mut primitive[begin..end]);
             batch.clear();
-            for &[x, y, z, dx, dy, dz, t_min, t_max] in rays {
-                batch.push(Ray { org: [x, y, z], t_min, dir: [dx, dy, dz], t_max });
-            }
+            batch.extend_from_arrays([x, y, z], [dx, dy, dz], t_min, t_max);
             if method == 0 {
                 if find.closest(&batch, &mut hits, &mut cx).is_err() {
                     return;
                 }
-                for (i, hit) in hits.iter().enumerate() {
-                    (t[i], primitive[i]) = (if hit.is_miss() { rays[i][7] } else { hit.t }, hit.primitive);
+                let out = t.chunks_mut(16).zip(primitive.chunks_mut(16)).zip(t_max.chunks(16));
+                for (block, ((t, primitive), t_max)) in hits.blocks().iter().zip(out) {
+                    for lane in 0..t.len().min(16) {
+                        let id = block.primitive.0[lane];
+                        (t[lane], primitive[lane]) = (if id == u32::MAX { t_max[lane] } else { block.t.0[lane] }, id);
+                    }
                 }
             } else {
                 if find.any(&batch, &mut occluded, &mut cx).is_err() {
                     return;
                 }
-                for (i, ray) in rays.iter().enumerate() {
-                    (t[i], primitive[i]) = (ray[7], if occluded.get(i) { 0 } else { u32::MAX });
+                let out = t.chunks_mut(16).zip(primitive.chunks_mut(16)).zip(t_max.chunks(16));
+                for (&word, ((t, primitive), t_max)) in occluded.words().iter().zip(out) {
+                    for lane in 0..t.len().min(16) {
+                        (t[lane], primitive[lane]) = (t_max[lane], if word >> lane & 1 != 0 { 0 } else { u32::MAX });
+                    }
                 }
             }
         }
     });
+    BUFFERS.set(Buffers { batch, hits, occluded });
 }

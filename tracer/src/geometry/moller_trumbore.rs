@@ -1,6 +1,6 @@
 //! The triangle test of Möller & Trumbore 1997, and the exact hit made of it.
 
-use super::slab::{Near, Origin, between, interval};
+use super::slab::{Near, Origin, PerRay, between, interval, mixed};
 use super::{Packet, Triangle, TriangleGroup, Vec3};
 use simd::{Float, Mask};
 
@@ -33,6 +33,17 @@ pub(crate) fn intersect<F: Float, O: Origin<F>>(
     )?;
     let infinity = F::splat(f32::INFINITY);
     Some(inside.candidate(ray, interval(&planes(triangle), ray, origin, near, -infinity, infinity)))
+}
+
+/// [`intersect`] for rays that point into different octants.
+#[inline(always)]
+pub(crate) fn intersect_mixed<F: Float>(triangle: &Triangle, ray: &Packet<F>) -> Option<Candidate<F>> {
+    let terms = PerRay.triangle_terms(ray, triangle);
+    let inside = Inside::test(ray.dir, Vec3::splat(triangle.e1), Vec3::splat(triangle.e2), terms)?;
+    let p = planes(triangle);
+    let infinity = F::splat(f32::INFINITY);
+    let planes = [[p[0]], [p[1]], [p[2]], [p[4]], [p[5]], [p[6]]];
+    Some(inside.candidate(ray, mixed(&planes, 0, ray, ray.signs(), -infinity, infinity)))
 }
 
 /// One ray, the same in every lane, against a triangle per lane; the same bits as [`intersect`].

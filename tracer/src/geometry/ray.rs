@@ -122,6 +122,44 @@ impl RayBatch {
         self.len += 1;
     }
 
+    /// Appends rays that lie in arrays, one for each number: origins, directions, starts and ends of intervals.
+    ///
+    /// # Panics
+    /// If the arrays differ in length.
+    pub fn extend_from_arrays(&mut self, org: [&[f32]; 3], dir: [&[f32]; 3], t_min: &[f32], t_max: &[f32]) {
+        let len = t_min.len();
+        assert!(
+            org.iter().chain(&dir).all(|v| v.len() == len) && t_max.len() == len,
+            "arrays of one length: {len} starts, {} ends",
+            t_max.len()
+        );
+        let mut i = 0;
+        // Ray by ray up to the end of the last block, then block by block.
+        while i < len {
+            if !self.len.is_multiple_of(16) || len - i < 16 {
+                let at = |v: [&[f32]; 3]| [v[0][i], v[1][i], v[2][i]];
+                self.push(Ray { org: at(org), t_min: t_min[i], dir: at(dir), t_max: t_max[i] });
+                i += 1;
+                continue;
+            }
+            let mut block = RayBlock::NONE;
+            for axis in 0..3 {
+                block.org[axis].0.copy_from_slice(&org[axis][i..i + 16]);
+                block.dir[axis].0.copy_from_slice(&dir[axis][i..i + 16]);
+            }
+            block.t_min.0.copy_from_slice(&t_min[i..i + 16]);
+            block.t_max.0.copy_from_slice(&t_max[i..i + 16]);
+            let first = [block.org[0].0[0], block.org[1].0[0], block.org[2].0[0]];
+            let same =
+                |axis: usize| block.org[axis].0.iter().fold(0, |d, x| d | (x.to_bits() ^ first[axis].to_bits())) == 0;
+            let origin = if self.len == 0 { Some(first) } else { self.origin };
+            self.origin = origin.filter(|&o| same_bits(o, first) && same(0) && same(1) && same(2));
+            self.blocks.push(block);
+            self.len += 16;
+            i += 16;
+        }
+    }
+
     /// Removes all rays and keeps the memory.
     pub fn clear(&mut self) {
         self.blocks.clear();

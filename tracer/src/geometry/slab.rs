@@ -32,6 +32,16 @@ impl Near {
         [upper(0), upper(1), upper(2)]
     }
 
+    /// Per axis `a` where directions are positive, else `b`.
+    #[inline(always)]
+    pub(crate) fn choose<F: Float>(self, a: Vec3<F>, b: Vec3<F>) -> Vec3<F> {
+        Vec3 {
+            x: if self.is_upper(0) { b.x } else { a.x },
+            y: if self.is_upper(1) { b.y } else { a.y },
+            z: if self.is_upper(2) { b.z } else { a.z },
+        }
+    }
+
     /// Near and far plane of an axis, from `min x y z _ max x y z _`.
     #[inline(always)]
     fn planes(self, planes: &[f32; 8], axis: usize) -> (f32, f32) {
@@ -127,4 +137,25 @@ pub(crate) fn between<F: Float>(to_near: Vec3<F>, to_far: Vec3<F>, ray: &Packet<
     let t_near = near.x.max(near.y).max(near.z.max(from));
     let t_far = far.x.min(far.y).min(far.z.min(to));
     (t_near, t_far)
+}
+
+/// [`interval`] in box `i` of a wide node, for rays that point into different octants: `signs` are those of the packet.
+#[inline(always)]
+pub(crate) fn mixed<F: Float, const N: usize>(
+    planes: &[[f32; N]; 6],
+    i: usize,
+    ray: &Packet<F>,
+    signs: [F::Mask; 3],
+    from: F,
+    to: F,
+) -> (F, F) {
+    let low = Vec3::splat([planes[0][i], planes[1][i], planes[2][i]]);
+    let high = Vec3::splat([planes[3][i], planes[4][i], planes[5][i]]);
+    let (near, far) = (choose(signs, high, low), choose(signs, low, high));
+    between(near - ray.org, far - ray.org, ray, from, to)
+}
+
+#[inline(always)]
+fn choose<F: Float>([x, y, z]: [F::Mask; 3], a: Vec3<F>, b: Vec3<F>) -> Vec3<F> {
+    Vec3 { x: F::select(x, a.x, b.x), y: F::select(y, a.y, b.y), z: F::select(z, a.z, b.z) }
 }

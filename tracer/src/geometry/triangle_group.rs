@@ -42,6 +42,15 @@ impl<const W: usize> TriangleGroup<W> {
         group
     }
 
+    /// The triangle of a lane, if there is one; material and geometry are not known here.
+    #[inline(always)]
+    pub(crate) fn triangle(&self, lane: usize) -> Option<Triangle> {
+        let at = |v: &[[f32; W]; 3]| [v[0][lane], v[1][lane], v[2][lane]];
+        let id = self.id[lane];
+        let (v0, e1, e2) = (at(&self.v0), at(&self.e1), at(&self.e2));
+        (id != Hit::NO_PRIMITIVE).then_some(Triangle { v0, id, e1, material: 0, e2, geometry: 0 })
+    }
+
     /// `v0`, `e1`, `e2` as vectors of `W` lanes.
     #[inline(always)]
     pub(crate) fn corner_and_edges<F: Float>(&self) -> [Vec3<F>; 3] {

@@ -1,15 +1,21 @@
 //! Ways of finding hits, all behind [`Method`]: rays in, hits out, the same bits from every one of them.
 
+mod auto;
 mod packet;
+mod query;
+mod ready;
 mod single;
+mod walk;
 
 pub use crate::lanes::Width;
+pub use auto::{Auto, Limits};
 pub use packet::{Packet, SharedOrigin, SlabForm};
-pub use single::{Arity, Single, Wide};
+pub use single::Single;
+pub use walk::{Arity, Wide};
 
 use crate::Error;
 use crate::geometry::{HitBatch, RayBatch, RayBlock};
-use crate::parallel::portions;
+use crate::parallel::{PORTION, portions};
 use crate::stats::Counters;
 use std::ops::Add;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -56,9 +62,10 @@ impl Context<'_> {
     }
 }
 
-/// Runs a kernel on portions of the rays, on all threads; whether to count is its first argument, and what it counted is added to the
+/// Runs a kernel on portions of `size` blocks of rays, on all threads; whether to count is its first argument, and what it counted is added to the
 /// context's.
 fn in_portions<B: Send>(
+    size: usize,
     rays: &RayBatch,
     results: &mut [B],
     cx: &mut Context<'_>,
@@ -69,7 +76,7 @@ fn in_portions<B: Send>(
         cx.check()?;
         Ok(kernel(count, rays, results))
     };
-    let done = portions(rays.blocks(), results, portion, Counters::default, Counters::add)?;
+    let done = portions(size, rays.blocks(), results, portion, Counters::default, Counters::add)?;
     if let Some(counters) = &mut cx.counters {
         *counters = counters.add(done);
     }

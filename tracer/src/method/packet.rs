@@ -1,6 +1,6 @@
 //! Packets of rays through the skip-pointer tree: Geimer & Müller 2003, section 3.3.
 
-use super::{BitVec, Context, Method, in_portions};
+use super::{BitVec, Context, Method, PORTION, in_portions};
 use crate::Error;
 use crate::bvh::Bvh;
 use crate::geometry::moller_trumbore::{self, Candidate};
@@ -82,7 +82,7 @@ impl<'a> Packet<'a> {
 
     fn find<Q: Query>(&self, rays: &RayBatch, results: &mut [Q::Block], cx: &mut Context<'_>) -> Result<(), Error> {
         let origin = self.origin(rays);
-        in_portions(rays, results, cx, |count, rays, results| {
+        in_portions(PORTION, rays, results, cx, |count, rays, results| {
             let Self { bvh, level, width, form, .. } = *self;
             if count {
                 // The work is the same at every level.

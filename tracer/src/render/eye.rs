@@ -37,7 +37,7 @@ impl EyeRays {
                 lanes::run_native(level, lanes, Generate { view, size: [width, height], tiles, blocks });
                 Ok(())
             };
-            let done = parallel::portions(&tiles, blocks, generate, || (), |(), ()| ());
+            let done = parallel::portions(parallel::PORTION, &tiles, blocks, generate, || (), |(), ()| ());
             debug_assert!(done.is_ok(), "nothing in it can fail");
         });
         Self { rays, width, height, tiles }
@@ -47,6 +47,19 @@ impl EyeRays {
     #[must_use]
     pub fn rays(&self) -> &RayBatch {
         &self.rays
+    }
+
+    /// The rays of the pixels alone, row by row, as most programs make them.
+    #[must_use]
+    pub fn by_rows(&self) -> RayBatch {
+        let mut blocks = vec![0; self.width.div_ceil(4) * self.height.div_ceil(4)];
+        for (block, tile) in self.tiles.iter().enumerate() {
+            blocks[usize::from(tile[1]) * self.width.div_ceil(4) + usize::from(tile[0])] = block;
+        }
+        let lane = |x: usize, y: usize| x & 1 | (y & 1) << 1 | (x & 2) << 1 | (y & 2) << 2;
+        let pixels = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        let ray = |(x, y): (usize, usize)| 16 * blocks[y / 4 * self.width.div_ceil(4) + x / 4] + lane(x % 4, y % 4);
+        pixels.map(|pixel| self.rays.get(ray(pixel))).collect()
     }
 
     /// The picture from the colours of all blocks.

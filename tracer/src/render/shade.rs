@@ -4,7 +4,7 @@ use crate::Error;
 use crate::geometry::{HitBatch, HitBlock, RayBatch, RayBlock, Vec3};
 use crate::lanes::{self, Lanes, Width};
 use crate::method::{BitVec, Context};
-use crate::parallel::portions;
+use crate::parallel::{PORTION, portions};
 use crate::scene::{Light, Scene};
 use simd::{Block, Float, Level, Mask, Vector};
 
@@ -73,7 +73,7 @@ pub(crate) fn shadow_rays(rays: &RayBatch, hits: &HitBatch, light: &Light, level
             lanes::run_native(level, lanes, ShadowRays { light: light.position, pairs, shadow });
             Ok(())
         };
-        let done = portions(&pairs, shadow, generate, || (), |(), ()| ());
+        let done = portions(PORTION, &pairs, shadow, generate, || (), |(), ()| ());
         debug_assert!(done.is_ok(), "nothing in it can fail");
     })
 }
@@ -156,7 +156,7 @@ pub(crate) fn shade(job: &Job<'_>) -> Result<Vec<[Block<f32>; 3]>, Error> {
         lanes::run_native(job.level, job.lanes, Shade { job, first, rays, colors });
         Ok(())
     };
-    portions(job.rays.blocks(), &mut colors, portion, || (), |(), ()| ())?;
+    portions(PORTION, job.rays.blocks(), &mut colors, portion, || (), |(), ()| ())?;
     Ok(colors)
 }
 

@@ -1,0 +1,457 @@
+//! Up to 256 rays through a wide tree: together as long as they agree, then sixteen at a time, then each alone.
+
+use super::Limits;
+use super::bounds::{Bounds, Interval};
+use crate::bvh::{Child, WideBvh, WideNode};
+use crate::geometry::moller_trumbore;
+use crate::geometry::slab::{self, Near, PerRay};
+use crate::geometry::{Packet, Triangle, Vec3};
+use crate::method::query::Query;
+use crate::method::ready::Ready;
+use crate::method::walk::{Arity, Walk, entry};
+use crate::stats::Count;
+use simd::{Block, Float, Mask, Simd, Vector};
+
+/// Blocks of sixteen rays in a tile.
+pub(super) const BLOCKS: usize = 16;
+
+/// Children of a node.
+pub(super) const N: usize = 8;
+
+/// Up to 256 rays, what was found for them, and room to work.
+pub(super) struct Tile<Q: Query> {
+    pub(super) rays: [Ready; BLOCKS],
+    pub(super) found: [Q::Block; BLOCKS],
+    /// Starts of the intervals, infinite for rays that are not traced now.
+    from: [Block<f32>; BLOCKS],
+    bounds: Bounds,
+    limits: Limits,
+    stack: Vec<Entry>,
+    single_stack: Vec<u64>,
+}
+
+/// A child to visit, and who wants to.
+#[derive(Debug, Clone, Copy, Default)]
+struct Entry {
+    /// Distance and child: see [`entry`].
+    key: u64,
+    /// A bit for each block, or for each ray of a block.
+    active: u16,
+}
+
+impl<Q: Query> Tile<Q> {
+    /// Without rays, for a tree of this depth.
+    pub(super) fn new(depth: usize, limits: Limits) -> Self {
+        Self {
+            rays: [const { Ready::NONE }; BLOCKS],
+            found: [Q::NOTHING; BLOCKS],
+            from: [Block([0.0; 16]); BLOCKS],
+            bounds: Bounds::NONE,
+            limits,
+            // Each node on the way leaves all but one of its children; a block starts where the tile is.
+            stack: vec![Entry::default(); 2 * depth * N + 1],
+            single_stack: vec![0; depth * N],
+        }
+    }
+
+    /// Finds the hits of all rays.
+    #[inline(always)]
+    pub(super) fn trace<S: Simd, C: Count>(&mut self, bvh: &WideBvh<N>, count: &mut C) {
+        let mut octants = [None; BLOCKS];
+        let mut blocks = 0_u16;
+        for (block, (rays, octant)) in self.rays.iter().zip(&mut octants).enumerate() {
+            self.found[block] = Q::NOTHING;
+            if rays.valid != 0 {
+                blocks |= 1 << block;
+                *octant = rays.common_octant::<S::Float16>();
+            }
+        }
+        if bvh.nodes.is_empty() || blocks == 0 {
+            return;
+        }
+        if let Some(octant) = self.agree(blocks, &octants) {
+            for block in 0..BLOCKS {
+                self.begin::<S::Float16>(block);
+            }
+            self.bounds.set_all::<S::Float16>(&self.rays, blocks, !Q::CLOSEST);
+            count.packet();
+            self.tile::<S, C>(bvh, Near::of_octant(octant), blocks, count);
+            return;
+        }
+        let size = size(&bvh.nodes[0]);
+        while blocks != 0 {
+            let block = blocks.trailing_zeros() as usize % BLOCKS;
+            blocks &= blocks - 1;
+            count.packet();
+            self.begin::<S::Float16>(block);
+            let rays = &self.rays[block];
+            match octants[block] {
+                Some(octant) if rays.cosine::<S::Float16>() >= self.limits.coherent => {
+                    self.bounds.set::<S::Float16>(block, rays);
+                    self.block::<S, C>(bvh, Near::of_octant(octant), Child::node(0), block, 0, count);
+                }
+                _ if rays.scatter::<S::Float16>() <= self.limits.scatter * size => {
+                    self.mixed::<S, C>(bvh, block, count)
+                }
+                _ => self.singles::<S, C>(bvh, Child::node(0), block, rays.valid, count),
+            }
+        }
+    }
+
+    /// Whether it pays to trace these blocks together: their directions differ little, and all point into this octant.
+    #[inline(always)]
+    fn agree(&self, blocks: u16, octants: &[Option<usize>; BLOCKS]) -> Option<usize> {
+        let reference = blocks.trailing_zeros() as usize % BLOCKS;
+        let (rays, octant) = (&self.rays[reference], octants[reference]?);
+        let lane = rays.valid.trailing_zeros() as usize % 16;
+        let mut rest = blocks;
+        while rest != 0 {
+            let block = rest.trailing_zeros() as usize % BLOCKS;
+            rest &= rest - 1;
+            let other = &self.rays[block];
+            let (first, last) =
+                (other.valid.trailing_zeros() as usize % 16, 15 - other.valid.leading_zeros() as usize % 16);
+            let same = octants[block] == Some(octant)
+                && rays.cosine_to(lane, other, first) >= self.limits.together
+                && rays.cosine_to(lane, other, last) >= self.limits.together;
+            if !same {
+                return None;
+            }
+        }
+        (blocks.count_ones() > self.limits.blocks).then_some(octant)
+    }
+
+    /// All rays of the block are traced now.
+    #[inline(always)]
+    fn begin<F: Float>(&mut self, block: usize) {
+        let rays = &self.rays[block];
+        let on = F::Mask::from_bitmask(u32::from(rays.valid));
+        F::select(on, F::load_block(&rays.t_min, 0), F::splat(f32::INFINITY)).store_block(&mut self.from[block], 0);
+        self.bounds.reach.0[block] = F::load_block(&rays.reach, 0).reduce_max();
+    }
+
+    /// All blocks of the mask from the root on.
+    #[inline(always)]
+    fn tile<S: Simd, C: Count>(&mut self, bvh: &WideBvh<N>, near: Near, blocks: u16, count: &mut C) {
+        let upper = near.upper();
+        let all = self.bounds.of_all::<S::Float8>(blocks, near);
+        let each = self.bounds.per_block::<S::Float16>(near);
+        let mut free = 0;
+        let (mut child, mut active) = (Child::node(0), blocks);
+        loop {
+            if child.is_leaf() {
+                self.leaf::<S::Float16, C>(bvh, near, child, active, count);
+            } else if active.count_ones() <= self.limits.blocks {
+                let mut rest = active;
+                while rest != 0 {
+                    let block = rest.trailing_zeros() as usize % BLOCKS;
+                    rest &= rest - 1;
+                    self.block::<S, C>(bvh, near, child, block, free, count);
+                }
+            } else {
+                let Some(node) = bvh.nodes.get(child.index()) else { break };
+                count.box_test();
+                let reach = S::Float16::load_block(&self.bounds.reach, 0);
+                let limit = self.bounds.limit(reach);
+                let (t_near, mask) = meet(node, upper, &all, limit.reduce_max());
+                assert!(free + N <= self.stack.len(), "the stack has room for the children of every node on the way");
+                let (bottom, t_near, mut rest) = (free, t_near.to_block(), mask.bitmask());
+                while rest != 0 {
+                    let i = rest.trailing_zeros() as usize % N;
+                    rest &= rest - 1;
+                    let (near, far) = planes(node, upper, i);
+                    let (from, to) = each.between(near, far, limit);
+                    let mut active = active & from.le(to).bitmask() as u16;
+                    // Triangles cost more than a box: who comes to a leaf has to meet it.
+                    if node.children[i].is_leaf() {
+                        active = self.meeting::<S::Float16>(active, near, far);
+                    }
+                    if active != 0 {
+                        push::<Q>(bvh, &mut self.stack, bottom, &mut free, t_near.0[i], node.children[i], active);
+                    }
+                }
+            }
+            loop {
+                if free == 0 {
+                    return;
+                }
+                free -= 1;
+                let Entry { key, active: wanted } = self.stack[free];
+                child = Child::from_bits(key as u32);
+                let t_near = S::Float16::splat(Q::distance(key));
+                active = wanted & t_near.le(S::Float16::load_block(&self.bounds.reach, 0)).bitmask() as u16;
+                if active != 0 {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Those of the blocks with a ray that meets the box.
+    #[inline(always)]
+    fn meeting<F: Float>(&self, blocks: u16, near: Vec3<F>, far: Vec3<F>) -> u16 {
+        let (mut meeting, mut rest) = (0, blocks);
+        while rest != 0 {
+            let block = rest.trailing_zeros() as usize % BLOCKS;
+            rest &= rest - 1;
+            let ray = self.rays[block].packet::<F>(&self.from[block]);
+            let (from, to) = slab::between(near - ray.org, far - ray.org, &ray, ray.t_min, ray.t_max);
+            meeting |= u16::from(from.le(to).any()) << block;
+        }
+        meeting
+    }
+
+    /// The rays of one block from `child` on, all into one octant; the stack is free from `bottom` on.
+    #[inline(always)]
+    fn block<S: Simd, C: Count>(
+        &mut self,
+        bvh: &WideBvh<N>,
+        near: Near,
+        mut child: Child,
+        block: usize,
+        bottom: usize,
+        count: &mut C,
+    ) {
+        let upper = near.upper();
+        let all = self.bounds.of_block::<S::Float8>(block, near);
+        let ray = self.rays[block].packet::<S::Float16>(&self.from[block]);
+        let mut free = bottom;
+        let mut active = u16::MAX;
+        loop {
+            if child.is_leaf() {
+                self.leaf::<S::Float16, C>(bvh, near, child, 1 << block, count);
+            } else if active.count_ones() <= self.limits.rays {
+                self.singles::<S, C>(bvh, child, block, active, count);
+            } else {
+                let Some(node) = bvh.nodes.get(child.index()) else { break };
+                count.box_test();
+                let limit = self.bounds.limit(self.bounds.reach.0[block]);
+                let (t_near, mask) = meet(node, upper, &all, limit);
+                let reach = S::Float16::load_block(&self.rays[block].reach, 0);
+                assert!(free + N <= self.stack.len(), "the stack has room for the children of every node on the way");
+                let (at, t_near, mut rest) = (free, t_near.to_block(), mask.bitmask());
+                while rest != 0 {
+                    let i = rest.trailing_zeros() as usize % N;
+                    rest &= rest - 1;
+                    let (near, far) = planes::<S::Float16>(node, upper, i);
+                    let (from, to) = slab::between(near - ray.org, far - ray.org, &ray, ray.t_min, reach);
+                    let active = from.le(to).bitmask() as u16;
+                    if active != 0 {
+                        push::<Q>(bvh, &mut self.stack, at, &mut free, t_near.0[i], node.children[i], active);
+                    }
+                }
+            }
+            loop {
+                if free == bottom {
+                    return;
+                }
+                free -= 1;
+                let entry = self.stack[free];
+                (child, active) = (Child::from_bits(entry.key as u32), entry.active);
+                if Q::distance(entry.key) <= self.bounds.reach.0[block] {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Rays of one block that point anywhere, from the root on.
+    #[inline(always)]
+    fn mixed<S: Simd, C: Count>(&mut self, bvh: &WideBvh<N>, block: usize, count: &mut C) {
+        let ray = self.rays[block].packet::<S::Float16>(&self.from[block]);
+        let signs = ray.signs();
+        let limit = if Q::CLOSEST { self.limits.mixed_closest } else { self.limits.mixed_any };
+        let infinity = S::Float16::splat(f32::INFINITY);
+        let mut free = 0;
+        let (mut child, mut active) = (Child::node(0), self.rays[block].valid);
+        loop {
+            if active.count_ones() <= limit {
+                self.singles::<S, C>(bvh, child, block, active, count);
+            } else if child.is_leaf() {
+                self.mixed_leaf::<S::Float16, C>(bvh, child, block, &ray, count);
+            } else {
+                let Some(node) = bvh.nodes.get(child.index()) else { break };
+                count.box_test();
+                assert!(free + N <= self.stack.len(), "the stack has room for the children of every node on the way");
+                let reach = S::Float16::load_block(&self.rays[block].reach, 0);
+                let bottom = free;
+                for i in 0..N {
+                    if node.children[i] == Child::NONE {
+                        break;
+                    }
+                    let (t_near, t_far) = slab::mixed(&node.planes, i, &ray, signs, ray.t_min, reach);
+                    let meets = t_near.le(t_far);
+                    if meets.any() {
+                        let nearest =
+                            if Q::CLOSEST { S::Float16::select(meets, t_near, infinity).reduce_min() } else { 0.0 };
+                        let active = meets.bitmask() as u16;
+                        push::<Q>(bvh, &mut self.stack, bottom, &mut free, nearest, node.children[i], active);
+                    }
+                }
+            }
+            loop {
+                if free == 0 {
+                    return;
+                }
+                free -= 1;
+                let entry = self.stack[free];
+                (child, active) = (Child::from_bits(entry.key as u32), entry.active);
+                if f32::from_bits((entry.key >> 32) as u32) <= self.bounds.reach.0[block] {
+                    break;
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn mixed_leaf<F: Float, C: Count>(
+        &mut self,
+        bvh: &WideBvh<N>,
+        leaf: Child,
+        block: usize,
+        ray: &Packet<F>,
+        count: &mut C,
+    ) {
+        let mut any = false;
+        let (first, end) = leaf.groups();
+        for group in &bvh.groups[first..end] {
+            for lane in 0..group.id.len() {
+                let Some(triangle) = group.triangle(lane) else { break };
+                count.triangle_test();
+                let rays = &mut self.rays[block];
+                let ray = Packet { t_max: F::load_block(&rays.reach, 0), ..*ray };
+                if let Some(hit) = moller_trumbore::intersect_mixed(&triangle, &ray) {
+                    count.triangle_hit();
+                    Q::accept(&mut self.found[block], &mut rays.reach, 0, triangle.id, hit);
+                    any = true;
+                }
+            }
+        }
+        if any {
+            self.update_reach::<F>(block);
+        }
+    }
+
+    /// Some rays of a block, each alone, from `child` on.
+    #[inline(always)]
+    fn singles<S: Simd, C: Count>(
+        &mut self,
+        bvh: &WideBvh<N>,
+        child: Child,
+        block: usize,
+        mut rest: u16,
+        count: &mut C,
+    ) {
+        let rays = &mut self.rays[block];
+        while rest != 0 {
+            let lane = rest.trailing_zeros() as usize % 16;
+            rest &= rest - 1;
+            // An occluded ray has nothing to find.
+            if rays.reach.0[lane] < rays.t_min.0[lane] {
+                continue;
+            }
+            let (found, stack) = (&mut self.found[block], &mut self.single_stack);
+            let walk = Walk::new(bvh, rays, lane);
+            rays.reach.0[lane] = walk.run::<Arity<N>, S, Q, C>(child, stack, lane, found, count);
+        }
+        self.update_reach::<S::Float16>(block);
+    }
+
+    /// The triangles of a leaf, for the rays of some blocks.
+    #[inline(always)]
+    fn leaf<F: Float, C: Count>(&mut self, bvh: &WideBvh<N>, near: Near, leaf: Child, blocks: u16, count: &mut C) {
+        let mut hit_blocks = 0;
+        let (first, end) = leaf.groups();
+        for group in &bvh.groups[first..end] {
+            for lane in 0..group.id.len() {
+                let Some(triangle) = group.triangle(lane) else { break };
+                hit_blocks |= self.triangle::<F, C>(&triangle, near, blocks, count);
+            }
+        }
+        while hit_blocks != 0 {
+            let block = hit_blocks.trailing_zeros() as usize % BLOCKS;
+            hit_blocks &= hit_blocks - 1;
+            self.update_reach::<F>(block);
+        }
+    }
+
+    /// A triangle, for the rays of some blocks; returns which of these hit it.
+    #[inline(always)]
+    fn triangle<F: Float, C: Count>(&mut self, triangle: &Triangle, near: Near, blocks: u16, count: &mut C) -> u16 {
+        let (mut hits, mut rest) = (0, blocks);
+        while rest != 0 {
+            let block = rest.trailing_zeros() as usize % BLOCKS;
+            rest &= rest - 1;
+            count.triangle_test();
+            let rays = &mut self.rays[block];
+            let ray = rays.packet::<F>(&self.from[block]);
+            if let Some(hit) = moller_trumbore::intersect(triangle, &ray, PerRay, near) {
+                count.triangle_hit();
+                Q::accept(&mut self.found[block], &mut rays.reach, 0, triangle.id, hit);
+                hits |= 1 << block;
+            }
+        }
+        hits
+    }
+
+    #[inline(always)]
+    fn update_reach<F: Float>(&mut self, block: usize) {
+        let rays = &self.rays[block];
+        self.bounds.reach.0[block] = F::load_block(&rays.reach, 0).reduce_max();
+    }
+}
+
+/// Sum of the sides of the box around the children.
+#[inline(always)]
+fn size(node: &WideNode<N>) -> f32 {
+    let mut size = 0.0;
+    for axis in 0..3 {
+        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+        for i in 0..N {
+            let (a, b) = (node.planes[axis][i], node.planes[axis + 3][i]);
+            low = if a < low { a } else { low };
+            high = if b > high { b } else { high };
+        }
+        size += high - low;
+    }
+    size
+}
+
+/// Near and far planes of child `i` in every lane.
+#[inline(always)]
+fn planes<F: Float>(node: &WideNode<N>, [x, y, z]: [usize; 3], i: usize) -> (Vec3<F>, Vec3<F>) {
+    let p = &node.planes;
+    (Vec3::splat([p[x][i], p[1 + y][i], p[2 + z][i]]), Vec3::splat([p[3 - x][i], p[4 - y][i], p[5 - z][i]]))
+}
+
+/// Which boxes any of the rays may meet, and where the first may enter them.
+#[inline(always)]
+fn meet<F: Float>(node: &WideNode<N>, [x, y, z]: [usize; 3], rays: &Interval<F>, reach: f32) -> (F, F::Mask) {
+    let p = &node.planes;
+    let near = Vec3 { x: F::load(&p[x]), y: F::load(&p[1 + y]), z: F::load(&p[2 + z]) };
+    let far = Vec3 { x: F::load(&p[3 - x]), y: F::load(&p[4 - y]), z: F::load(&p[5 - z]) };
+    let (t_near, t_far) = rays.between(near, far, F::splat(reach));
+    (t_near, t_near.le(t_far))
+}
+
+/// A child goes to the stack: below those nearer that came there since `bottom`, above the farther.
+#[inline(always)]
+fn push<Q: Query>(
+    bvh: &WideBvh<N>,
+    stack: &mut [Entry],
+    bottom: usize,
+    free: &mut usize,
+    t_near: f32,
+    child: Child,
+    active: u16,
+) {
+    bvh.prefetch(child);
+    let key = entry(t_near, child);
+    let mut at = *free;
+    while Q::CLOSEST && at > bottom && stack[at - 1].key < key {
+        stack[at] = stack[at - 1];
+        at -= 1;
+    }
+    stack[at] = Entry { key, active };
+    *free += 1;
+}

@@ -1,0 +1,187 @@
+//! Sixteen rays made ready for traversal, in memory: as packets, or one of them.
+
+use crate::geometry::{Packet, RayBlock, Vec3};
+use simd::{Block, Float, Mask};
+
+/// See [`Packet`].
+#[derive(Debug, Clone)]
+pub(super) struct Ready {
+    org: [Block<f32>; 3],
+    dir: [Block<f32>; 3],
+    inv_dir: [Block<f32>; 3],
+    inv_dir_far: [Block<f32>; 3],
+    pub(super) t_min: Block<f32>,
+    /// How far along each ray a hit matters.
+    pub(super) reach: Block<f32>,
+    /// Which rays can hit something, a bit each.
+    pub(super) valid: u16,
+}
+
+impl Ready {
+    /// No rays.
+    pub(super) const NONE: Self = {
+        let zero = [Block([0.0; 16]); 3];
+        Self { org: zero, dir: zero, inv_dir: zero, inv_dir_far: zero, t_min: zero[0], reach: zero[0], valid: 0 }
+    };
+
+    #[inline(always)]
+    pub(super) fn new<F: Float>(block: &RayBlock) -> Self {
+        let mut ready = Self::NONE;
+        ready.set::<F>(block);
+        ready
+    }
+
+    /// These rays instead.
+    #[inline(always)]
+    pub(super) fn set<F: Float>(&mut self, block: &RayBlock) {
+        self.valid = 0;
+        for chunk in 0..16 / F::LANES {
+            let rays = Packet::<F>::load(block, chunk);
+            rays.org.store(&mut self.org, chunk);
+            rays.dir.store(&mut self.dir, chunk);
+            rays.inv_dir.store(&mut self.inv_dir, chunk);
+            rays.inv_dir_far.store(&mut self.inv_dir_far, chunk);
+            rays.t_min.store_block(&mut self.t_min, chunk);
+            rays.t_max.store_block(&mut self.reach, chunk);
+            self.valid |= (rays.valid.bitmask() << (chunk * F::LANES)) as u16;
+        }
+    }
+
+    /// All sixteen, with the reach for their end; those with `from` infinite hit nothing.
+    #[inline(always)]
+    pub(super) fn packet<F: Float>(&self, from: &Block<f32>) -> Packet<F> {
+        const { assert!(F::LANES == 16, "a lane for each ray") }
+        Packet {
+            org: Vec3::load(&self.org, 0),
+            dir: Vec3::load(&self.dir, 0),
+            inv_dir: Vec3::load(&self.inv_dir, 0),
+            inv_dir_far: Vec3::load(&self.inv_dir_far, 0),
+            t_min: F::load_block(from, 0),
+            t_max: F::load_block(&self.reach, 0),
+            valid: F::Mask::splat(true),
+        }
+    }
+
+    /// One ray.
+    #[inline(always)]
+    pub(super) fn ray(&self, lane: usize) -> Packet<f32> {
+        let at = |v: &[Block<f32>; 3]| Vec3 { x: v[0].0[lane], y: v[1].0[lane], z: v[2].0[lane] };
+        Packet {
+            org: at(&self.org),
+            dir: at(&self.dir),
+            inv_dir: at(&self.inv_dir),
+            inv_dir_far: at(&self.inv_dir_far),
+            t_min: self.t_min.0[lane],
+            t_max: self.reach.0[lane],
+            valid: true,
+        }
+    }
+
+    /// The octant that a ray points into: a bit per axis, set for negative.
+    #[inline(always)]
+    pub(super) fn octant(&self, lane: usize) -> usize {
+        let negative = |axis: usize| usize::from(self.inv_dir[axis].0[lane] < 0.0);
+        negative(0) | negative(1) << 1 | negative(2) << 2
+    }
+
+    /// The octant that all valid rays point into, if it is one.
+    #[inline(always)]
+    pub(super) fn common_octant<F: Float>(&self) -> Option<usize> {
+        const { assert!(F::LANES == 16, "a lane for each ray") }
+        let zero = F::splat(0.0);
+        let mut octant = 0;
+        for axis in 0..3 {
+            let negative = F::load_block(&self.inv_dir[axis], 0).lt(zero).bitmask() as u16 & self.valid;
+            if negative != 0 {
+                if negative != self.valid {
+                    return None;
+                }
+                octant |= 1 << axis;
+            }
+        }
+        Some(octant)
+    }
+
+    /// Smallest and largest origin of the lanes of `mask`, which has one at least.
+    #[inline(always)]
+    pub(super) fn origins<F: Float>(&self, mask: u16) -> [[f32; 2]; 3] {
+        ranges::<F>(&self.org, mask)
+    }
+
+    /// Smallest and largest end of the rays of `mask` (origin plus direction times reach), widened by the rounding.
+    #[inline(always)]
+    pub(super) fn ends<F: Float>(&self, mask: u16) -> [[f32; 2]; 3] {
+        let (reach, rounding) = (F::load_block(&self.reach, 0), F::splat(2.0 * f32::EPSILON));
+        let mut ends = [[0.0; 2]; 3];
+        for (axis, ends) in ends.iter_mut().enumerate() {
+            let org = F::load_block(&self.org[axis], 0);
+            let way = F::load_block(&self.dir[axis], 0) * reach;
+            let error = (org.abs() + way.abs()) * rounding;
+            let end = org + way;
+            *ends = [range_of(end - error, mask)[0], range_of(end + error, mask)[1]];
+        }
+        ends
+    }
+
+    /// Sum of the sides of the box around the origins.
+    #[inline(always)]
+    pub(super) fn scatter<F: Float>(&self) -> f32 {
+        let [x, y, z] = self.origins::<F>(self.valid);
+        (x[1] - x[0]) + (y[1] - y[0]) + (z[1] - z[0])
+    }
+
+    /// Smallest and largest reciprocal of the direction of the lanes of `mask`, which has one at least.
+    #[inline(always)]
+    pub(super) fn inverses<F: Float>(&self, mask: u16) -> [[f32; 2]; 3] {
+        ranges::<F>(&self.inv_dir, mask)
+    }
+
+    /// The largest reach of the lanes of `mask`, negative infinity without one.
+    #[inline(always)]
+    pub(super) fn farthest<F: Float>(&self, mask: u16) -> f32 {
+        range::<F>(&self.reach, mask)[1]
+    }
+
+    /// The smallest start of the intervals of the lanes of `mask`.
+    #[inline(always)]
+    pub(super) fn earliest<F: Float>(&self, mask: u16) -> f32 {
+        range::<F>(&self.t_min, mask)[0]
+    }
+
+    /// Cosine of the angle between two rays.
+    #[inline(always)]
+    pub(super) fn cosine_to(&self, lane: usize, other: &Self, other_lane: usize) -> f32 {
+        let (a, b) = (self.ray(lane).dir, other.ray(other_lane).dir);
+        a.dot(b) / (a.dot(a) * b.dot(b)).sqrt()
+    }
+
+    /// The smallest cosine of the angles between the first valid ray and the others.
+    #[inline(always)]
+    pub(super) fn cosine<F: Float>(&self) -> f32 {
+        const { assert!(F::LANES == 16, "a lane for each ray") }
+        let first = self.ray(self.valid.trailing_zeros() as usize % 16).dir;
+        let (a, b) = (Vec3::<F>::load(&self.dir, 0), Vec3::splat([first.x, first.y, first.z]));
+        let cosines = a.dot(b) / (a.dot(a) * b.dot(b)).sqrt();
+        F::select(F::Mask::from_bitmask(u32::from(self.valid)), cosines, F::splat(1.0)).reduce_min()
+    }
+}
+
+#[inline(always)]
+fn ranges<F: Float>(v: &[Block<f32>; 3], mask: u16) -> [[f32; 2]; 3] {
+    [range::<F>(&v[0], mask), range::<F>(&v[1], mask), range::<F>(&v[2], mask)]
+}
+
+/// Smallest and largest of some lanes.
+#[inline(always)]
+fn range<F: Float>(v: &Block<f32>, mask: u16) -> [f32; 2] {
+    range_of(F::load_block(v, 0), mask)
+}
+
+#[inline(always)]
+fn range_of<F: Float>(x: F, mask: u16) -> [f32; 2] {
+    const { assert!(F::LANES == 16, "a lane for each ray") }
+    let on = F::Mask::from_bitmask(u32::from(mask));
+    let low = F::select(on, x, F::splat(f32::INFINITY)).reduce_min();
+    let high = F::select(on, x, F::splat(f32::NEG_INFINITY)).reduce_max();
+    [low, high]
+}
