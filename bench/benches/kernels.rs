@@ -10,9 +10,9 @@ use std::hint::black_box;
 use tracer::bvh::{BuildConfig, Bvh};
 use tracer::geometry::HitBatch;
 use tracer::method::{Context, Method, Packet, Width};
+use tracer::model::builtin;
 use tracer::progress::Silent;
 use tracer::render::EyeRays;
-use tracer::scene::builtin;
 
 /// One ray against boxes in structure-of-arrays form: how many it meets.
 #[inline(always)]

@@ -2,7 +2,7 @@
 //! from the definition in the documentation, as the yardstick for every method.
 
 use tracer::geometry::{Hit, Ray, Triangle};
-use tracer::scene::Mesh;
+use tracer::model::Mesh;
 
 type Vec3 = [f32; 3];
 

@@ -6,9 +6,9 @@ use tests::{Random, brute_force, real_scene};
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig};
 use tracer::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
 use tracer::method::{Auto, BitVec, Context, Method, Packet, SharedOrigin, Single, SlabForm, Width};
+use tracer::model::{Mesh, Model, builtin};
 use tracer::progress::Silent;
 use tracer::render::{EyeRays, Frame, Settings, Surfaces};
-use tracer::scene::{Mesh, Scene, builtin};
 
 const WIDTHS: [Width; 4] = [Width::One, Width::Four, Width::Eight, Width::Sixteen];
 
@@ -145,11 +145,11 @@ fn unusual(random: &mut Random, mut ray: Ray) -> Ray {
     ray
 }
 
-fn eye_rays(scene: &Scene, size: usize) -> EyeRays {
+fn eye_rays(scene: &Model, size: usize) -> EyeRays {
     EyeRays::new(&scene.camera_or_default(), size, size, Level::best(), Width::Auto)
 }
 
-fn check_scene(name: &str, scene: &Scene, size: usize, number: usize, checked: usize) {
+fn check_scene(name: &str, scene: &Model, size: usize, number: usize, checked: usize) {
     levels_line();
     let (binned, insertion) = both_trees(&scene.mesh);
     let trees = [("binned", &binned), ("insertion", &insertion)];
@@ -163,7 +163,7 @@ fn check_scene(name: &str, scene: &Scene, size: usize, number: usize, checked: u
 
 /// Rays as others generate them, by [`Auto`]: pictures row by row, of widths that blocks of sixteen and tiles do and do not
 /// divide, and from what they hit to a light.
-fn check_pictures(name: &str, scene: &Scene) {
+fn check_pictures(name: &str, scene: &Model) {
     let binned = Bvh::build(&scene.mesh, &BuildConfig::default(), &Silent).expect("a valid mesh");
     let wide = binned.collapse(&CollapseConfig::default());
     let Aabb { min, max } = scene.mesh.bounds();
@@ -211,7 +211,7 @@ fn trees_are_exact() {
 
 fn check_real(name: &str) {
     let Some(path) = real_scene(name) else { return };
-    let (scene, _) = Scene::open(&path.to_string_lossy(), &Silent).expect("a readable scene");
+    let (scene, _) = Model::open(&path.to_string_lossy(), &Silent).expect("a readable scene");
     check_scene(name, &scene, 64, 2_000, 50);
 }
 

@@ -2,11 +2,11 @@
 
 use tests::real_scene;
 use tracer::geometry::Aabb;
+use tracer::model::{Mesh, Model, obj};
 use tracer::progress::Silent;
-use tracer::scene::{Mesh, Scene, obj};
 
 /// Loads a scene without a warning; none when it is not there.
-fn load(name: &str) -> Option<Scene> {
+fn load(name: &str) -> Option<Model> {
     let path = real_scene(name)?;
     let (scene, warnings) = obj::read(&path, &Silent).unwrap_or_else(|e| panic!("{e}"));
     assert!(warnings.is_empty(), "{warnings:?}");
@@ -15,11 +15,11 @@ fn load(name: &str) -> Option<Scene> {
     Some(scene)
 }
 
-fn material_of(scene: &Scene, triangle: usize) -> &str {
+fn material_of(scene: &Model, triangle: usize) -> &str {
     &scene.materials[scene.mesh.material(triangle) as usize].name
 }
 
-fn inside(scene: &Scene) -> bool {
+fn inside(scene: &Model) -> bool {
     let camera = scene.camera_or_default();
     camera.validate().expect("a sound camera");
     scene.mesh.bounds().contains(&Aabb { min: camera.eye, max: camera.eye })

@@ -16,8 +16,8 @@ use std::time::Instant;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
 use tracer::geometry::{HitBatch, RayBatch};
 use tracer::method::{Auto, BitVec, Context, Limits, Method, Packet, Single, Width};
+use tracer::model::Mesh;
 use tracer::progress::Silent;
-use tracer::scene::Mesh;
 
 /// `nv` vertices of three floats, `nt` triangles of three indices.
 #[repr(C)]

@@ -209,8 +209,8 @@ mod tests {
     use super::*;
     use crate::bvh::BuildConfig;
     use crate::geometry::Hit;
+    use crate::model::builtin;
     use crate::progress::Silent;
-    use crate::scene::builtin;
 
     fn tree(spec: &str, config: &BuildConfig) -> Bvh {
         let scene = builtin(spec).expect("a built-in scene").expect("a possible size");

@@ -56,6 +56,17 @@ impl RayBlock {
         t_min: Block([Ray::NONE.t_min; 16]),
         t_max: Block([Ray::NONE.t_max; 16]),
     };
+
+    /// Puts a ray into a lane.
+    #[inline]
+    pub(crate) fn set(&mut self, lane: usize, ray: &Ray) {
+        for axis in 0..3 {
+            self.org[axis].0[lane] = ray.org[axis];
+            self.dir[axis].0[lane] = ray.dir[axis];
+        }
+        self.t_min.0[lane] = ray.t_min;
+        self.t_max.0[lane] = ray.t_max;
+    }
 }
 
 /// Any number of rays in blocks of sixteen, structure of arrays.
@@ -107,12 +118,7 @@ impl RayBatch {
             self.blocks.push(RayBlock::NONE);
         }
         if let Some(block) = self.blocks.last_mut() {
-            for axis in 0..3 {
-                block.org[axis].0[lane] = ray.org[axis];
-                block.dir[axis].0[lane] = ray.dir[axis];
-            }
-            block.t_min.0[lane] = ray.t_min;
-            block.t_max.0[lane] = ray.t_max;
+            block.set(lane, &ray);
         }
         self.origin = match self.origin {
             _ if self.len == 0 => Some(ray.org),

@@ -6,7 +6,7 @@ use super::walk::{Arity, Walk, Wide};
 use super::{BitVec, Context, Method, PORTION, in_portions};
 use crate::Error;
 use crate::bvh::{Child, WideBvh};
-use crate::geometry::{HitBatch, RayBatch, RayBlock};
+use crate::geometry::{Hit, HitBatch, Ray, RayBatch, RayBlock};
 use crate::stats::{Count, Counters, NoCount};
 use simd::{Kernel, Level, Simd};
 
@@ -25,6 +25,28 @@ where
     #[must_use]
     pub fn new(bvh: &'a WideBvh<N>, level: Level) -> Self {
         Self { bvh, level }
+    }
+
+    /// The first hit of one ray; [`Hit::MISS`] if there is none.
+    #[must_use]
+    pub fn closest_of(&self, ray: &Ray) -> Hit {
+        let hits = self.one::<Closest>(ray);
+        Hit { t: hits.t.0[0], u: hits.u.0[0], v: hits.v.0[0], primitive: hits.primitive.0[0] }
+    }
+
+    /// Whether one ray hits anything.
+    #[must_use]
+    pub fn any_of(&self, ray: &Ray) -> bool {
+        self.one::<Any>(ray) != 0
+    }
+
+    fn one<Q: Query>(&self, ray: &Ray) -> Q::Block {
+        let mut rays = [RayBlock::NONE];
+        rays[0].set(0, ray);
+        let mut results = [Q::NOTHING];
+        self.level.run(Trace::<Q, _, N> { bvh: self.bvh, rays: &rays, results: &mut results, count: NoCount });
+        let [result] = results;
+        result
     }
 
     fn find<Q: Query>(&self, rays: &RayBatch, results: &mut [Q::Block], cx: &mut Context<'_>) -> Result<(), Error> {

@@ -3,8 +3,8 @@
 use super::Image;
 use crate::geometry::{RayBatch, RayBlock};
 use crate::lanes::{self, Lanes, Width};
+use crate::model::Camera;
 use crate::parallel;
-use crate::scene::Camera;
 use simd::{Block, Float, Level};
 
 /// Rays from a pinhole camera through the pixels of an image.

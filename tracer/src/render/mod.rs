@@ -12,7 +12,7 @@ use crate::Error;
 use crate::geometry::{HitBatch, RayBatch};
 use crate::lanes::Width;
 use crate::method::{BitVec, Context, Method};
-use crate::scene::{Camera, Light, Scene};
+use crate::model::{Camera, Light, Model};
 use simd::Level;
 
 /// What to render with.
@@ -46,7 +46,7 @@ pub struct Frame<'a> {
 impl<'a> Frame<'a> {
     /// Before the first pass. Lights default to a headlight at the eye.
     #[must_use]
-    pub fn new(scene: &Scene, surfaces: &'a Surfaces, camera: Camera, settings: Settings) -> Self {
+    pub fn new(scene: &Model, surfaces: &'a Surfaces, camera: Camera, settings: Settings) -> Self {
         let lights: Vec<Light> = scene.lights_or_headlight(&camera);
         Self {
             settings,
@@ -119,7 +119,7 @@ impl<'a> Frame<'a> {
 /// # Errors
 /// [`Error::Cancelled`].
 pub fn render(
-    scene: &Scene,
+    scene: &Model,
     surfaces: &Surfaces,
     camera: Camera,
     settings: Settings,

@@ -4,8 +4,8 @@ use crate::Error;
 use crate::geometry::{HitBatch, HitBlock, RayBatch, RayBlock, Vec3};
 use crate::lanes::{self, Lanes, Width};
 use crate::method::{BitVec, Context};
+use crate::model::{Light, Model};
 use crate::parallel::{PORTION, portions};
-use crate::scene::{Light, Scene};
 use simd::{Block, Float, Level, Mask, Vector};
 
 /// What shading needs to know of each triangle, laid out for gathering and apart from what traversal reads
@@ -24,9 +24,9 @@ impl Surfaces {
     /// Ambient, diffuse, specular, exponent.
     const MATERIAL: u32 = 10;
 
-    /// From a scene whose mesh is valid ([`Scene::validate`]).
+    /// From a scene whose mesh is valid ([`Model::validate`]).
     #[must_use]
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(scene: &Model) -> Self {
         let mesh = &scene.mesh;
         let mut normals: Vec<f32> = mesh.normals.iter().flatten().copied().collect();
         let mut triangles = Vec::with_capacity(4 * mesh.triangles.len());
@@ -40,7 +40,7 @@ impl Surfaces {
             triangles.extend(of_vertices);
             triangles.push(mesh.material(i));
         }
-        let words = |m: &crate::scene::Material| {
+        let words = |m: &crate::model::Material| {
             [m.ambient, m.diffuse, m.specular].into_iter().flatten().chain([m.shininess]).collect::<Vec<f32>>()
         };
         Self { triangles, normals, materials: scene.materials.iter().flat_map(words).collect() }

@@ -1,8 +1,8 @@
 //! `tracer trace`: rays from NumPy, hits to NumPy.
 
 use crate::{Folder, SQUARES, levels};
+use tracer::model::Model;
 use tracer::progress::Silent;
-use tracer::scene::Scene;
 
 const INF: f32 = f32::INFINITY;
 
@@ -143,7 +143,7 @@ fn hits_of_a_brute_force_loop() {
         .collect();
     folder.write("rays.npy", rays_npy(&rays));
     folder.run("trace balls:1 --rays rays.npy --hits hits.npy");
-    let (scene, _) = Scene::open("balls:1", &Silent).expect("a scene");
+    let (scene, _) = Model::open("balls:1", &Silent).expect("a scene");
     let triangles: Vec<[[f64; 3]; 3]> =
         (0..scene.mesh.triangles.len()).map(|i| scene.mesh.triangle(i).map(|p| p.map(f64::from))).collect();
     let mut number = 0;

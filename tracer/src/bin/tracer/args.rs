@@ -10,7 +10,7 @@ use std::str::FromStr;
 use tracer::Error;
 use tracer::bvh::{BuildConfig, Bvh};
 use tracer::method::{Packet, SlabForm, Width};
-use tracer::scene::Camera;
+use tracer::model::Camera;
 
 /// What the picture shows.
 #[derive(Debug, Clone, Default, Args)]

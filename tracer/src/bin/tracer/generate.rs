@@ -7,8 +7,8 @@ use indicatif::HumanCount;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use tracer::Error;
+use tracer::model::Builtin;
 use tracer::progress::Progress;
-use tracer::scene::Builtin;
 
 /// Write a built-in scene to a file
 #[derive(Debug, clap::Args)]

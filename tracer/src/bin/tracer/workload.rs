@@ -6,13 +6,13 @@ use crate::machine;
 use std::time::{Duration, Instant};
 use tracer::Error;
 use tracer::bvh::Bvh;
+use tracer::model::{Builtin, Mesh, Model};
 use tracer::progress::Progress;
 use tracer::render::Surfaces;
-use tracer::scene::{Builtin, Mesh, Scene};
 
 /// A scene with its tree.
 pub struct Workload {
-    pub scene: Scene,
+    pub scene: Model,
     pub surfaces: Surfaces,
     pub bvh: Bvh,
     /// The builder's name.
@@ -33,14 +33,14 @@ impl Workload {
 }
 
 /// The scene that the user names, and the milliseconds it took; passes warnings on.
-pub fn open(spec: &str, console: &Console) -> Result<(Scene, f64), Error> {
+pub fn open(spec: &str, console: &Console) -> Result<(Model, f64), Error> {
     let (name, size) = spec.split_once(':').unwrap_or((spec, ""));
     if let Some(which) = Builtin::ALL.into_iter().find(|b| b.name() == name) {
         check_size(which, size.parse().unwrap_or_else(|_| which.default_size()))?;
         console.stage("generate", 0);
     }
     let start = Instant::now();
-    let (scene, warnings) = Scene::open(spec, console)?;
+    let (scene, warnings) = Model::open(spec, console)?;
     warnings.iter().for_each(|w| console.warn(w));
     Ok((scene, ms(start.elapsed())))
 }

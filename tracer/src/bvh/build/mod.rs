@@ -12,8 +12,8 @@ mod tests;
 use super::{Bvh, Node};
 use crate::Error;
 use crate::geometry::Triangle;
+use crate::model::Mesh;
 use crate::progress::Progress;
-use crate::scene::Mesh;
 use rayon::prelude::*;
 
 /// Which builder makes the tree, and its knobs.

@@ -3,7 +3,7 @@
 use super::triangle;
 use crate::geometry::Aabb;
 use crate::geometry::aabb::{max, min, zip};
-use crate::scene::Mesh;
+use crate::model::Mesh;
 use rayon::prelude::*;
 
 /// A box padded to four lanes. The fourth means nothing to a box, but is always a normal number (denormals are slow).

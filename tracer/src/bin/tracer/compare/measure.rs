@@ -13,9 +13,9 @@ use std::time::{Duration, Instant};
 use tracer::Error;
 use tracer::geometry::HitBatch;
 use tracer::method::{Context, Method, Packet, Width};
+use tracer::model::Camera;
 use tracer::progress::Progress;
 use tracer::render::{EyeRays, Frame, Settings};
-use tracer::scene::Camera;
 use tracer::stats::Counters;
 
 /// A row of the comparison.

@@ -2,8 +2,8 @@
 
 use super::tessellate::Tessellator;
 use super::{Builtin, glossy, matt, spd, spd_camera};
-use crate::scene::Scene;
-use crate::scene::vec3::{Vec3, add, narrow, rotate, scale, sin_cos};
+use crate::model::Model;
+use crate::model::vec3::{Vec3, add, narrow, rotate, scale, sin_cos};
 
 const X: Vec3 = [1.0, 0.0, 0.0];
 const Z: Vec3 = [0.0, 0.0, 1.0];
@@ -17,7 +17,7 @@ const RADIUS: f64 = 0.07412;
 /// # Panics
 /// When it would have no objects, or more triangles than a tree holds ([`Builtin::triangles`] tells).
 #[must_use]
-pub fn rings(size: u32) -> Scene {
+pub fn rings(size: u32) -> Model {
     let mut t = Tessellator::new(Builtin::Rings.triangles(size).expect("size from 1 to 50"));
     let (sin, cos) = sin_cos(22.5);
     let spacing = 1.0 / sin;
@@ -70,7 +70,7 @@ fn object(t: &mut Tessellator, pentagons: &[[Vec3; 5]; 6], at: Vec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::vec3::{cross, dot, length, normalize, sub};
+    use crate::model::vec3::{cross, dot, length, normalize, sub};
 
     /// The six pentagons lie in planes whose normals are those of a dodecahedron: any two at the same angle.
     #[test]

@@ -2,9 +2,9 @@
 
 use super::mtl;
 use crate::Error;
+use crate::model::{Material, Mesh, Model};
 use crate::output::{stage, step};
 use crate::progress::Progress;
-use crate::scene::{Material, Mesh, Scene};
 use std::collections::HashSet;
 use std::io::{self, Write};
 use std::path::Path;
@@ -15,9 +15,9 @@ use std::path::Path;
 /// names are made unique, without blanks at their ends.
 ///
 /// # Errors
-/// [`Error::Geometry`] when the scene is not valid ([`Scene::validate`]), [`Error::Io`] when a file cannot be written,
+/// [`Error::Geometry`] when the scene is not valid ([`Model::validate`]), [`Error::Io`] when a file cannot be written,
 /// [`Error::Cancelled`].
-pub fn write(scene: &Scene, path: &Path, progress: &dyn Progress) -> Result<(), Error> {
+pub fn write(scene: &Model, path: &Path, progress: &dyn Progress) -> Result<(), Error> {
     scene.validate()?;
     let names = unique_names(&scene.materials);
     let library = path.with_extension("mtl");

@@ -23,7 +23,7 @@ use std::path::Path;
 
 /// A mesh with all that is needed for a picture of it.
 #[derive(Debug, Clone)]
-pub struct Scene {
+pub struct Model {
     /// Name for reports: the file's stem or the built-in's name.
     pub name: String,
     /// The triangles.
@@ -40,7 +40,7 @@ pub struct Scene {
     pub background: [f32; 3],
 }
 
-impl Scene {
+impl Model {
     /// The background of the SPD's scenes, and of those that have none of their own.
     pub const SKY: [f32; 3] = [0.078, 0.361, 0.753];
 
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn opens_what_is_named() {
-        let (scene, warnings) = Scene::open("balls:0", &Silent).expect("a built-in");
+        let (scene, warnings) = Model::open("balls:0", &Silent).expect("a built-in");
         assert_eq!((scene.mesh.triangles.len(), warnings.len()), (194, 0));
         for (spec, reason) in [
             ("scene.blend", "ends in .obj, .obj.gz or .obj.zst"),
@@ -130,7 +130,7 @@ mod tests {
             ("balls:x", "whole number from 0 to 6"),
             ("there/is/none.OBJ", "cannot open there/is/none.OBJ"),
         ] {
-            let e = Scene::open(spec, &Silent).expect_err(spec);
+            let e = Model::open(spec, &Silent).expect_err(spec);
             assert!(e.to_string().contains(reason), "{e}");
             assert_eq!(matches!(e, Error::Usage(_)), !spec.ends_with("OBJ"));
         }

@@ -1,7 +1,7 @@
 //! Spheres, cones and rectangles as triangles, as the SPD's library cuts them at resolution 4.
 
-use crate::scene::Mesh;
-use crate::scene::vec3::{Vec3, add, cross, length, narrow, normalize, scale, sin_cos, sub};
+use crate::model::Mesh;
+use crate::model::vec3::{Vec3, add, cross, length, narrow, normalize, scale, sin_cos, sub};
 use std::collections::HashMap;
 
 /// A sphere is a cube blown up, each face cut into `RESOLUTION` x `RESOLUTION` cells by equally spaced great circles.
@@ -147,7 +147,7 @@ pub(super) fn next<T>(list: &[T]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::vec3::{dot, wide};
+    use crate::model::vec3::{dot, wide};
 
     #[test]
     fn a_sphere_is_closed_round_and_shares_its_vertices() {

@@ -5,7 +5,7 @@
 pub struct Material {
     /// MTL name, for messages.
     pub name: String,
-    /// Ka: of the ambient light ([`Scene::ambient`](super::Scene::ambient)).
+    /// Ka: of the ambient light ([`Model::ambient`](super::Model::ambient)).
     pub ambient: [f32; 3],
     /// Kd.
     pub diffuse: [f32; 3],

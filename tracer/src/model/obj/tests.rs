@@ -1,13 +1,13 @@
 use super::*;
 use crate::geometry::Aabb;
+use crate::model::builtin;
 use crate::progress::Silent;
-use crate::scene::builtin;
 use std::fs;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use tempfile::TempDir;
 
 /// Reads an OBJ with other files beside it.
-fn read_with(text: &[u8], others: &[(&str, &str)]) -> Result<(Scene, Vec<String>), Error> {
+fn read_with(text: &[u8], others: &[(&str, &str)]) -> Result<(Model, Vec<String>), Error> {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, content) in others {
         let path = folder.path().join(name);
@@ -239,7 +239,7 @@ fn faults_of_a_library() {
     }
 }
 
-fn written(scene: &Scene) -> (TempDir, Scene) {
+fn written(scene: &Model) -> (TempDir, Model) {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scene.obj");
     write(scene, &path, &Silent).expect("written");
@@ -271,7 +271,7 @@ fn written_scenes_come_back_the_same() {
 #[test]
 fn difficult_scenes_come_back_too() {
     let grey = |name: &str, shade: f32| Material { diffuse: [shade; 3], ..Material::grey(name) };
-    let scene = Scene {
+    let scene = Model {
         name: "scene".into(),
         mesh: Mesh {
             positions: vec![[f32::MAX, f32::MIN_POSITIVE, 1e-45], [-0.0, 0.1, 1.0 / 3.0], [16_777_217.0, -1e-7, 1e20]],

@@ -2,8 +2,8 @@
 
 use super::tessellate::Tessellator;
 use super::{Builtin, matt, spd, spd_camera};
-use crate::scene::Scene;
-use crate::scene::vec3::{Vec3, add, rotate, scale, sin_cos};
+use crate::model::Model;
+use crate::model::vec3::{Vec3, add, rotate, scale, sin_cos};
 
 /// Radius of the trunk at the ground.
 const TRUNK: f64 = 0.15;
@@ -18,7 +18,7 @@ const FORK: [(f64, f64, f64); 2] = [(40.0, 90.0, 0.65), (25.0, 230.0, 0.70)];
 /// # Panics
 /// When it would have more triangles than a tree holds ([`Builtin::triangles`] tells).
 #[must_use]
-pub fn tree(size: u32) -> Scene {
+pub fn tree(size: u32) -> Model {
     let mut t = Tessellator::new(Builtin::Tree.triangles(size).expect("size from 0 to 19"));
     t.rectangle([[50.0, 50.0, 0.0], [-50.0, 50.0, 0.0], [-50.0, -50.0, 0.0], [50.0, -50.0, 0.0]], 0);
     let root = Frame { origin: [0.0; 3], axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] };
@@ -73,7 +73,7 @@ fn branch(t: &mut Tessellator, frame: &Frame, radius: f64, forks: u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::vec3::{length, sub, wide};
+    use crate::model::vec3::{length, sub, wide};
 
     /// The first fork, worked out by hand: z turned by 40 degrees about x is (0, -sin 40, cos 40), and by 90 degrees about
     /// z then (sin 40, 0, cos 40).

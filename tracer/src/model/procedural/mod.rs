@@ -12,7 +12,7 @@ pub use hairball::hairball;
 pub use rings::rings;
 pub use tree::tree;
 
-use super::{Camera, Light, Material, Scene};
+use super::{Camera, Light, Material, Model};
 use crate::Error;
 use crate::bvh::Node;
 use tessellate::{CONE_TRIANGLES, SPHERE_TRIANGLES, Tessellator};
@@ -82,7 +82,7 @@ impl Builtin {
     ///
     /// # Errors
     /// [`Error::Usage`] when [`Builtin::triangles`] has no number for this size.
-    pub fn scene(self, size: u32) -> Result<Scene, Error> {
+    pub fn scene(self, size: u32) -> Result<Model, Error> {
         if self.triangles(size).is_none() {
             return self.wrong_size(&size.to_string());
         }
@@ -114,7 +114,7 @@ impl Builtin {
 /// The built-in scene that `spec` names: `balls`, `rings`, `tree` or `hairball`, with `:size` after it or of
 /// [`Builtin::default_size`]. None when it names none.
 #[must_use]
-pub fn builtin(spec: &str) -> Option<Result<Scene, Error>> {
+pub fn builtin(spec: &str) -> Option<Result<Model, Error>> {
     let (name, size) = spec.split_once(':').map_or((spec, None), |(n, s)| (n, Some(s)));
     let which = Builtin::ALL.into_iter().find(|b| b.name() == name)?;
     Some(match size.map(|s| (s, s.parse())) {
@@ -125,16 +125,16 @@ pub fn builtin(spec: &str) -> Option<Result<Scene, Error>> {
 }
 
 /// A scene with the customs of the SPD: its sky, lights of equal intensity 1 / sqrt(number of lights).
-fn spd(which: Builtin, made: Tessellator, materials: Vec<Material>, lights: &[[f32; 3]], camera: Camera) -> Scene {
+fn spd(which: Builtin, made: Tessellator, materials: Vec<Material>, lights: &[[f32; 3]], camera: Camera) -> Model {
     let intensity = 1.0 / (lights.len() as f32).sqrt();
-    Scene {
+    Model {
         name: which.name().into(),
         mesh: made.mesh,
         materials,
         lights: lights.iter().map(|&position| Light { position, intensity: [intensity; 3] }).collect(),
         camera: Some(camera),
         ambient: 1.0,
-        background: Scene::SKY,
+        background: Model::SKY,
     }
 }
 
@@ -164,7 +164,7 @@ fn glossy(name: &str, color: [f32; 3], [ambient, diffuse, highlight]: [f32; 3], 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::vec3::{cross, dot, length, sub, wide};
+    use crate::model::vec3::{cross, dot, length, sub, wide};
 
     /// The sizes of the paper's table and the least ones; what is announced is what is made.
     #[test]
@@ -200,7 +200,7 @@ mod tests {
             let mut used = vec![false; mesh.positions.len()];
             for (i, normals) in mesh.normal_indices.iter().enumerate() {
                 mesh.triangles[i].iter().for_each(|&v| used[v as usize] = true);
-                if *normals == crate::scene::Mesh::FLAT {
+                if *normals == crate::model::Mesh::FLAT {
                     continue;
                 }
                 let [a, b, c] = mesh.triangle(i).map(wide);
@@ -223,7 +223,7 @@ mod tests {
                 let power: f32 = scene.lights.len() as f32 * light.intensity[0] * light.intensity[0];
                 assert!((power - 1.0).abs() < 1e-6);
             }
-            assert_eq!((scene.name.as_str(), scene.background), (which.name(), Scene::SKY));
+            assert_eq!((scene.name.as_str(), scene.background), (which.name(), Model::SKY));
         }
     }
 

@@ -51,7 +51,7 @@ impl Mesh {
 
     /// Checks all that a tree, a method or a renderer relies on: at least one and at most [`Node::MAX_TRIANGLES`]
     /// triangles, finite positions and normals, indices that name what exists, and lists of matching length. (Whether the
-    /// materials exist only the scene can tell: [`Scene::validate`](super::Scene::validate).)
+    /// materials exist only the scene can tell: [`Model::validate`](super::Model::validate).)
     ///
     /// # Errors
     /// [`Error::Geometry`] with the number of the first vertex or triangle at fault (from 0) and what to do.

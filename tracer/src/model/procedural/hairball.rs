@@ -2,8 +2,8 @@
 
 use super::tessellate::next;
 use super::{Builtin, glossy};
-use crate::scene::vec3::{Vec3, add, cross, dot, narrow, normalize, perpendicular, scale, sin_cos, sub};
-use crate::scene::{Camera, Light, Mesh, Scene};
+use crate::model::vec3::{Vec3, add, cross, dot, narrow, normalize, perpendicular, scale, sin_cos, sub};
+use crate::model::{Camera, Light, Mesh, Model};
 
 /// Segments of a strand.
 const SEGMENTS: u32 = 80;
@@ -24,7 +24,7 @@ const THICKNESS: f64 = 0.012;
 /// # Panics
 /// When it would have no strands, or more triangles than a tree holds ([`Builtin::triangles`] tells).
 #[must_use]
-pub fn hairball(size: u32) -> Scene {
+pub fn hairball(size: u32) -> Model {
     let triangles = Builtin::Hairball.triangles(size).expect("size from 1 to 559240");
     let mut mesh = Mesh { triangles: Vec::with_capacity(triangles), ..Mesh::default() };
     let vertices = size as usize * ((SEGMENTS + 1) * SIDES) as usize;
@@ -35,14 +35,14 @@ pub fn hairball(size: u32) -> Scene {
     }
     mesh.normal_indices.clone_from(&mesh.triangles);
     let intensity = [0.5_f32.sqrt(); 3];
-    Scene {
+    Model {
         name: Builtin::Hairball.name().into(),
         mesh,
         materials: vec![glossy("hair", [0.62, 0.40, 0.22], [0.1, 0.9, 0.3], 20.0)],
         lights: [[6.0, 9.0, 8.0], [-9.0, 3.0, 6.0]].map(|position| Light { position, intensity }).into(),
         camera: Some(Camera { eye: [0.0, 0.0, 7.0], at: [0.0; 3], up: [0.0, 1.0, 0.0], fov: 90.0 }),
         ambient: 1.0,
-        background: Scene::SKY,
+        background: Model::SKY,
     }
 }
 
@@ -111,7 +111,7 @@ impl SplitMix64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::vec3::{length, wide};
+    use crate::model::vec3::{length, wide};
 
     /// The reference output of the generator for seed 1234567.
     #[test]

@@ -84,7 +84,7 @@ fn crossing(corners: [Vec3; 3], axis: usize) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::geometry::Aabb;
-    use crate::scene::procedural::hairball;
+    use crate::model::procedural::hairball;
 
     /// Boxes, each given by two corners.
     fn boxes(list: &[[[f32; 3]; 2]]) -> Mesh {

@@ -2,7 +2,7 @@
 
 use super::tidy::Outline;
 use crate::Error;
-use crate::scene::Material;
+use crate::model::Material;
 use std::fmt::Write;
 use std::fs;
 use std::io;

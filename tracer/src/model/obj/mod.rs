@@ -14,7 +14,7 @@ mod write;
 
 pub use write::write;
 
-use super::{Material, Mesh, Scene, decompress};
+use super::{Material, Mesh, Model, decompress};
 use crate::Error;
 use crate::progress::Progress;
 use std::collections::HashMap;
@@ -31,7 +31,7 @@ use tidy::Outline;
 /// # Errors
 /// [`Error::Io`] when a file cannot be read (a missing library is a warning), [`Error::Data`] with the line when its content is
 /// not acceptable: see the module's text; [`Error::Cancelled`].
-pub fn read(path: &Path, progress: &dyn Progress) -> Result<(Scene, Vec<String>), Error> {
+pub fn read(path: &Path, progress: &dyn Progress) -> Result<(Model, Vec<String>), Error> {
     let mut text = decompress::read(path, progress)?;
     let outline = tidy::tidy(&mut text, path, progress)?;
     let mut mesh = parse(&text, path, progress)?;
@@ -43,7 +43,7 @@ pub fn read(path: &Path, progress: &dyn Progress) -> Result<(Scene, Vec<String>)
     let name = stem(path).unwrap_or_default();
     // Many exporters write an ambient coefficient of 1 for everything: at full light it would wash the picture out.
     let ambient = 0.1;
-    let scene = Scene { name, mesh, materials, lights: Vec::new(), camera: None, ambient, background: Scene::SKY };
+    let scene = Model { name, mesh, materials, lights: Vec::new(), camera: None, ambient, background: Model::SKY };
     Ok((scene, warnings))
 }
 

@@ -2,8 +2,8 @@
 
 use super::tessellate::Tessellator;
 use super::{Builtin, glossy, matt, spd, spd_camera};
-use crate::scene::Scene;
-use crate::scene::vec3::{Vec3, add, normalize, rotate, scale, sin_cos};
+use crate::model::Model;
+use crate::model::vec3::{Vec3, add, normalize, rotate, scale, sin_cos};
 
 /// The sphereflake (Haines 1987): a sphere with nine smaller ones on it, each with nine on it, and so on `size` times,
 /// over a floor: (9^(size + 1) - 1) / 8 spheres of 192 triangles each, and 2. Size 4: 1,417,154 triangles.
@@ -11,7 +11,7 @@ use crate::scene::vec3::{Vec3, add, normalize, rotate, scale, sin_cos};
 /// # Panics
 /// When it would have more triangles than a tree holds ([`Builtin::triangles`] tells).
 #[must_use]
-pub fn balls(size: u32) -> Scene {
+pub fn balls(size: u32) -> Model {
     let mut t = Tessellator::new(Builtin::Balls.triangles(size).expect("size from 0 to 6"));
     let z = -0.5;
     t.rectangle([[12.0, 12.0, z], [-12.0, 12.0, z], [-12.0, -12.0, z], [12.0, -12.0, z]], 0);
@@ -59,10 +59,10 @@ fn carry(d: Vec3, axis: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::vec3::{dot, length, sub, wide};
+    use crate::model::vec3::{dot, length, sub, wide};
 
     /// Centre and radius of each sphere, from its vertices.
-    fn spheres(scene: &Scene) -> Vec<(Vec3, f64)> {
+    fn spheres(scene: &Model) -> Vec<(Vec3, f64)> {
         let of = |points: &[[f32; 3]]| {
             let center = scale(points.iter().fold([0.0; 3], |s, &p| add(s, wide(p))), 1.0 / points.len() as f64);
             (center, length(sub(wide(points[0]), center)))
