@@ -2,10 +2,18 @@
 
 /// FNV-1a, 64 bits, over 32-bit words.
 pub fn fnv1a(words: impl IntoIterator<Item = u32>) -> u64 {
-    words
-        .into_iter()
-        .flat_map(u32::to_le_bytes)
-        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+    words.into_iter().flat_map(u32::to_le_bytes).fold(START, step)
+}
+
+/// The same over bytes.
+pub fn fnv1a_bytes(bytes: &[u8]) -> u64 {
+    bytes.iter().copied().fold(START, step)
+}
+
+const START: u64 = 0xcbf2_9ce4_8422_2325;
+
+fn step(hash: u64, byte: u8) -> u64 {
+    (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
 }
 
 #[cfg(test)]

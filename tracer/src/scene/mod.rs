@@ -1,5 +1,7 @@
 //! Triangles ready to be asked.
 
+mod file;
+
 use crate::Error;
 use crate::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
 use crate::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch};

@@ -1,0 +1,217 @@
+//! Built scenes as files.
+//!
+//! Everything is little-endian, in words of four bytes unless said otherwise: eight bytes [`MAGIC`], the version, the number of
+//! bytes behind this header (eight bytes), a checksum of them (FNV-1a, eight bytes); then the numbers of meshes, nodes and groups, the
+//! first triangle of each mesh, the box around all, the nodes (48 planes, 8 children) and the groups (36 coordinates, 4 ids).
+
+use super::Scene;
+use crate::Error;
+use crate::bvh::{WideBvh, WideNode};
+use crate::geometry::{Aabb, TriangleGroup};
+use crate::hash::fnv1a_bytes;
+use crate::output::write_atomically;
+use simd::Level;
+use std::path::Path;
+
+const MAGIC: &[u8; 8] = b"TRACER\r\n";
+const VERSION: u32 = 1;
+const HEADER: usize = 8 + 4 + 8 + 8;
+
+impl Scene {
+    /// Writes the scene as it is, tree and triangles, to be loaded without building. The file appears whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be written.
+    pub fn save(&self, path: &Path) -> Result<(), Error> {
+        let mut body = Vec::with_capacity(64 + self.bvh.bytes());
+        let mut word = |x: u32| body.extend(x.to_le_bytes());
+        let WideBvh { nodes, groups, .. } = &self.bvh;
+        [self.first.len(), nodes.len(), groups.len()].iter().for_each(|&n| word(n as u32));
+        self.first.iter().for_each(|&first| word(first));
+        self.bounds.min.iter().chain(&self.bounds.max).for_each(|x| word(x.to_bits()));
+        for node in nodes {
+            node.planes.as_flattened().iter().for_each(|x| word(x.to_bits()));
+            node.children.iter().for_each(|child| word(child.bits()));
+        }
+        for group in groups {
+            for v in [&group.v0, &group.e1, &group.e2] {
+                v.as_flattened().iter().for_each(|x| word(x.to_bits()));
+            }
+            group.id.iter().for_each(|&id| word(id));
+        }
+        write_atomically(path, |out| {
+            out.write_all(MAGIC)?;
+            out.write_all(&VERSION.to_le_bytes())?;
+            out.write_all(&(body.len() as u64).to_le_bytes())?;
+            out.write_all(&fnv1a_bytes(&body).to_le_bytes())?;
+            out.write_all(&body)
+        })
+    }
+
+    /// Reads what [`Scene::save`] wrote, on any machine, to be traced at a level.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the file cannot be read, [`Error::Data`] when it is of another kind or version, or damaged: no such file makes
+    /// a query fail.
+    pub fn load(path: &Path, level: Level) -> Result<Self, Error> {
+        let bytes =
+            std::fs::read(path).map_err(|source| Error::Io { action: "read", path: path.to_owned(), source })?;
+        parse(&bytes, level).map_err(|message| Error::Data { path: path.to_owned(), line: None, message })
+    }
+}
+
+fn parse(bytes: &[u8], level: Level) -> Result<Scene, String> {
+    let Some((header, body)) = bytes.split_at_checked(HEADER).filter(|(header, _)| header.starts_with(MAGIC)) else {
+        return Err("not a saved scene: build the scene from its mesh and save it".into());
+    };
+    let mut header = Words(&header[8..]);
+    let version = header.word()?;
+    if version != VERSION {
+        return Err(format!(
+            "a saved scene of version {version}, this program reads version {VERSION}: save the scene again"
+        ));
+    }
+    let damaged = |what: String| format!("damaged, {what}: save the scene again");
+    let length = header.long()?;
+    if length != body.len() as u64 {
+        return Err(damaged(format!("{} bytes where there should be {length}", body.len())));
+    }
+    if header.long()? != fnv1a_bytes(body) {
+        return Err(damaged("the checksum is another".into()));
+    }
+    let mut words = Words(body);
+    let [meshes, nodes, groups] = [words.word()?, words.word()?, words.word()?].map(|n| n as usize);
+    // What the numbers claim is there, before memory is asked for.
+    if body.len() as u128 != 4 * (9 + meshes as u128 + 56 * nodes as u128 + 40 * groups as u128) {
+        return Err(damaged("its numbers contradict its length".into()));
+    }
+    let first = (0..meshes).map(|_| words.word()).collect::<Result<Vec<_>, _>>()?;
+    if !first.is_sorted() {
+        return Err(damaged("its meshes overlap".into()));
+    }
+    let bounds = Aabb { min: words.floats()?, max: words.floats()? };
+    let node = |words: &mut Words| {
+        let mut node = WideNode::EMPTY;
+        for planes in &mut node.planes {
+            *planes = words.floats()?;
+        }
+        for child in &mut node.children {
+            *child = crate::bvh::Child::from_bits(words.word()?);
+        }
+        Ok::<_, String>(node)
+    };
+    let group = |words: &mut Words| {
+        let mut group = TriangleGroup::new(&[]);
+        for v in [&mut group.v0, &mut group.e1, &mut group.e2] {
+            for axis in v {
+                *axis = words.floats()?;
+            }
+        }
+        for id in &mut group.id {
+            *id = words.word()?;
+        }
+        Ok::<_, String>(group)
+    };
+    let nodes = (0..nodes).map(|_| node(&mut words)).collect::<Result<Vec<_>, _>>()?;
+    let groups = (0..groups).map(|_| group(&mut words)).collect::<Result<Vec<_>, _>>()?;
+    let bvh = WideBvh::from_parts(nodes, groups).map_err(damaged)?;
+    Ok(Scene { bvh, level, bounds, first })
+}
+
+/// Bytes taken from the front.
+struct Words<'a>(&'a [u8]);
+
+impl Words<'_> {
+    fn word(&mut self) -> Result<u32, String> {
+        let (word, rest) = self.0.split_first_chunk().ok_or("it ends too early: save the scene again")?;
+        self.0 = rest;
+        Ok(u32::from_le_bytes(*word))
+    }
+
+    fn long(&mut self) -> Result<u64, String> {
+        Ok(u64::from(self.word()?) | u64::from(self.word()?) << 32)
+    }
+
+    fn floats<const N: usize>(&mut self) -> Result<[f32; N], String> {
+        let mut floats = [0.0; N];
+        for x in &mut floats {
+            *x = f32::from_bits(self.word()?);
+        }
+        Ok(floats)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{HitBatch, Ray, RayBatch};
+
+    fn scene() -> Scene {
+        let mesh = crate::model::builtin("balls:1").expect("a name").expect("a size").mesh;
+        Scene::builder().mesh(mesh.clone()).mesh(mesh).build().expect("a valid mesh")
+    }
+
+    fn saved() -> Vec<u8> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("scene.bin");
+        scene().save(&path).expect("written");
+        std::fs::read(&path).expect("read")
+    }
+
+    fn with_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
+        let sum = fnv1a_bytes(&bytes[HEADER..]);
+        bytes[20..28].copy_from_slice(&sum.to_le_bytes());
+        bytes
+    }
+
+    #[test]
+    fn comes_back_the_same() {
+        let (scene, loaded) = (scene(), parse(&saved(), Level::best()).expect("sound"));
+        let rays: RayBatch =
+            (0..300).map(|i| Ray::new([0.01 * i as f32 - 1.5, 0.1, 5.0], [0.0, 0.003, -1.0])).collect();
+        let (mut a, mut b) = (HitBatch::new(), HitBatch::new());
+        scene.closest_batch(&rays, &mut a);
+        loaded.closest_batch(&rays, &mut b);
+        assert_eq!((a.hash(), scene.first, scene.bounds), (b.hash(), loaded.first, loaded.bounds));
+        assert!(a.iter().any(|hit| !hit.is_miss()));
+        assert_eq!((scene.bvh.depth, scene.bvh.triangles), (loaded.bvh.depth, loaded.bvh.triangles));
+    }
+
+    #[test]
+    fn damage_is_an_error() {
+        let good = saved();
+        let fails = |bytes: &[u8], reason: &str| {
+            let e = parse(bytes, Level::best()).expect_err(reason);
+            assert!(e.contains(reason), "{e}");
+        };
+        fails(&[], "not a saved scene");
+        fails(b"solid ascii stl, not a scene of ours", "not a saved scene");
+        fails(&good[..good.len() - 1], "bytes where there should be");
+        let mut version = good.clone();
+        version[8] = 9;
+        fails(&version, "version 9");
+        for at in (HEADER..good.len()).step_by(97) {
+            let mut bytes = good.clone();
+            bytes[at] ^= 0x10;
+            fails(&bytes, "the checksum is another");
+        }
+    }
+
+    /// With a checksum that is right, whatever is accepted can be traced.
+    #[test]
+    fn no_forgery_makes_a_query_fail() {
+        let good = saved();
+        let rays: RayBatch = (0..64).map(|i| Ray::new([0.05 * i as f32 - 1.5, 0.1, 5.0], [0.0, 0.003, -1.0])).collect();
+        let mut accepted = 0;
+        for (i, at) in (HEADER..good.len()).step_by(131).enumerate() {
+            let mut bytes = good.clone();
+            bytes[at] = [0, 0x7f, 0x80, 0xff][i % 4];
+            if let Ok(scene) = parse(&with_checksum(bytes), Level::best()) {
+                accepted += 1;
+                scene.closest_batch(&rays, &mut HitBatch::new());
+                let _ = scene.closest(&rays.get(7));
+            }
+        }
+        assert!(accepted > 0, "most coordinates can be anything");
+    }
+}
