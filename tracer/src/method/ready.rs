@@ -108,21 +108,6 @@ impl Ready {
         ranges::<F>(&self.org, mask)
     }
 
-    /// Smallest and largest end of the rays of `mask` (origin plus direction times reach), widened by the rounding.
-    #[inline(always)]
-    pub(super) fn ends<F: Float>(&self, mask: u16) -> [[f32; 2]; 3] {
-        let (reach, rounding) = (F::load_block(&self.reach, 0), F::splat(2.0 * f32::EPSILON));
-        let mut ends = [[0.0; 2]; 3];
-        for (axis, ends) in ends.iter_mut().enumerate() {
-            let org = F::load_block(&self.org[axis], 0);
-            let way = F::load_block(&self.dir[axis], 0) * reach;
-            let error = (org.abs() + way.abs()) * rounding;
-            let end = org + way;
-            *ends = [range_of(end - error, mask)[0], range_of(end + error, mask)[1]];
-        }
-        ends
-    }
-
     /// Sum of the sides of the box around the origins.
     #[inline(always)]
     pub(super) fn scatter<F: Float>(&self) -> f32 {
@@ -174,13 +159,8 @@ fn ranges<F: Float>(v: &[Block<f32>; 3], mask: u16) -> [[f32; 2]; 3] {
 /// Smallest and largest of some lanes.
 #[inline(always)]
 fn range<F: Float>(v: &Block<f32>, mask: u16) -> [f32; 2] {
-    range_of(F::load_block(v, 0), mask)
-}
-
-#[inline(always)]
-fn range_of<F: Float>(x: F, mask: u16) -> [f32; 2] {
     const { assert!(F::LANES == 16, "a lane for each ray") }
-    let on = F::Mask::from_bitmask(u32::from(mask));
+    let (on, x) = (F::Mask::from_bitmask(u32::from(mask)), F::load_block(v, 0));
     let low = F::select(on, x, F::splat(f32::INFINITY)).reduce_min();
     let high = F::select(on, x, F::splat(f32::NEG_INFINITY)).reduce_max();
     [low, high]

@@ -7,21 +7,9 @@ use crate::method::ready::Ready;
 use simd::{Block, Float};
 
 /// Ranges of rays that point into one octant, a lane for each of sixteen blocks of them.
-///
-/// Rays that meet at their ends, as those to a light do, may be seen from there: a beam is narrow where its rays are close. Then
-/// all distances are less by the length of the ray, which changes nothing for the order of the planes; but the rounding is
-/// another, so that a box counts as met up to [`Bounds::slack`] outside.
-///
-/// How much that has to be: with `u` = 2^-24 and `T` the length of a ray, the distance to a plane as [`slab`](crate::geometry::slab)
-/// computes it is off by 4 `u` of itself (12 more for the padded far one), the one computed here by 4 `u`. Where the near one is
-/// above `T` or the far one below `-2 T`, there is no hit anyway. All others are at most `3 T`: together less than 128 `u T`.
 #[derive(Debug, Clone)]
 pub(super) struct Bounds {
-    /// Seen from the ends of the rays instead of their origins.
-    from_ends: bool,
-    /// See above: 0 unless seen from the ends.
-    slack: f32,
-    /// Smallest and largest origins, or ends.
+    /// Smallest and largest origins.
     org: [[Block<f32>; 3]; 2],
     /// Smallest and largest reciprocals of directions.
     inv_dir: [[Block<f32>; 3]; 2],
@@ -32,61 +20,27 @@ pub(super) struct Bounds {
 
 impl Bounds {
     pub(super) const NONE: Self = Self {
-        from_ends: false,
-        slack: 0.0,
         org: [[Block([0.0; 16]); 3]; 2],
         inv_dir: [[Block([1.0; 16]); 3]; 2],
         t_min: Block([0.0; 16]),
         reach: Block([f32::NEG_INFINITY; 16]),
     };
 
-    /// The ranges of blocks of rays; whether they may be seen from their ends.
+    /// The ranges of blocks of rays.
     #[inline(always)]
-    pub(super) fn set_all<F: Float>(&mut self, rays: &[Ready; 16], blocks: u16, may_use_ends: bool) {
-        let mut rest = blocks;
+    pub(super) fn set_all<F: Float>(&mut self, rays: &[Ready; 16], blocks: u16) {
         self.reach = Self::NONE.reach;
-        let mut longest = 0.0;
+        let mut rest = blocks;
         while rest != 0 {
             let block = rest.trailing_zeros() as usize % 16;
             rest &= rest - 1;
             self.set::<F>(block, &rays[block]);
-            let length = self.reach.0[block];
-            longest = if length > longest { length } else { longest };
         }
-        if may_use_ends && longest < f32::INFINITY {
-            let mut ends = Self::NONE.org;
-            let mut rest = blocks;
-            while rest != 0 {
-                let block = rest.trailing_zeros() as usize % 16;
-                rest &= rest - 1;
-                let ranges = rays[block].ends::<F>(rays[block].valid);
-                for axis in 0..3 {
-                    for end in 0..2 {
-                        ends[end][axis].0[block] = ranges[axis][end];
-                    }
-                }
-            }
-            // A quarter: not for rays that are about parallel.
-            if extent(&ends, blocks) < 0.25 * extent(&self.org, blocks) {
-                self.org = ends;
-                self.t_min = Block([-longest; 16]);
-                self.from_ends = true;
-                self.slack = longest * (64.0 * f32::EPSILON);
-            }
-        }
-    }
-
-    /// How far a hit matters, as the ranges count distances.
-    #[inline(always)]
-    pub(super) fn limit<F: Float>(&self, reach: F) -> F {
-        if self.from_ends { F::splat(0.0) } else { reach }
     }
 
     /// The ranges of the rays of a block.
     #[inline(always)]
     pub(super) fn set<F: Float>(&mut self, lane: usize, rays: &Ready) {
-        self.from_ends = false;
-        self.slack = 0.0;
         let mask = rays.valid;
         let (origins, inverses) = (rays.origins::<F>(mask), rays.inverses::<F>(mask));
         for axis in 0..3 {
@@ -105,7 +59,7 @@ impl Bounds {
         const { assert!(F::LANES == 16, "a lane for each block") }
         let org = [Vec3::load(&self.org[0], 0), Vec3::load(&self.org[1], 0)];
         let inv_dir = [Vec3::load(&self.inv_dir[0], 0), Vec3::load(&self.inv_dir[1], 0)];
-        Interval::new(org, inv_dir, F::load_block(&self.t_min, 0), self.slack, near)
+        Interval::new(org, inv_dir, F::load_block(&self.t_min, 0), near)
     }
 
     /// The ranges of one block in every lane.
@@ -113,7 +67,7 @@ impl Bounds {
     pub(super) fn of_block<F: Float>(&self, block: usize, near: Near) -> Interval<F> {
         let org = [lane(&self.org[0], block), lane(&self.org[1], block)];
         let inv_dir = [lane(&self.inv_dir[0], block), lane(&self.inv_dir[1], block)];
-        Interval::new(org, inv_dir, F::splat(self.t_min.0[block]), self.slack, near)
+        Interval::new(org, inv_dir, F::splat(self.t_min.0[block]), near)
     }
 
     /// The ranges of the blocks of a mask (one at least) together in every lane.
@@ -121,15 +75,8 @@ impl Bounds {
     pub(super) fn of_all<F: Float>(&self, blocks: u16, near: Near) -> Interval<F> {
         let org = [extreme(&self.org[0], 0, blocks), extreme(&self.org[1], 1, blocks)];
         let inv_dir = [extreme(&self.inv_dir[0], 0, blocks), extreme(&self.inv_dir[1], 1, blocks)];
-        Interval::new(org, inv_dir, F::splat(over(&self.t_min, blocks)[0]), self.slack, near)
+        Interval::new(org, inv_dir, F::splat(over(&self.t_min, blocks)[0]), near)
     }
-}
-
-/// Sum of the sides of the box around the ranges of some blocks.
-#[inline(always)]
-fn extent(ranges: &[[Block<f32>; 3]; 2], blocks: u16) -> f32 {
-    let side = |axis: usize| over(&ranges[1][axis], blocks)[1] - over(&ranges[0][axis], blocks)[0];
-    side(0) + side(1) + side(2)
 }
 
 #[inline(always)]
@@ -164,13 +111,12 @@ pub(super) struct Interval<F: Float> {
     inv_dir: [Vec3<F>; 2],
     inv_dir_far: [Vec3<F>; 2],
     t_min: F,
-    slack: F,
 }
 
 impl<F: Float> Interval<F> {
     /// From smallest and largest origins and reciprocals.
     #[inline(always)]
-    fn new([low, high]: [Vec3<F>; 2], inv_dir: [Vec3<F>; 2], t_min: F, slack: f32, near: Near) -> Self {
+    fn new([low, high]: [Vec3<F>; 2], inv_dir: [Vec3<F>; 2], t_min: F, near: Near) -> Self {
         // `plane - origin` times a positive reciprocal is smallest for the largest origin, times a negative one for the smallest.
         let pad = F::splat(Packet::<F>::PAD);
         Self {
@@ -179,7 +125,6 @@ impl<F: Float> Interval<F> {
             inv_dir,
             inv_dir_far: [inv_dir[0].scale(pad), inv_dir[1].scale(pad)],
             t_min,
-            slack: F::splat(slack),
         }
     }
 
@@ -190,7 +135,7 @@ impl<F: Float> Interval<F> {
         let (a, b) = (near - self.near_org, far - self.far_org);
         let near = (a * self.inv_dir[0]).min(a * self.inv_dir[1]);
         let far = (b * self.inv_dir_far[0]).max(b * self.inv_dir_far[1]);
-        let t_far = far.x.min(far.y).min(far.z.min(reach)) + self.slack;
+        let t_far = far.x.min(far.y).min(far.z.min(reach));
         (near.x.max(near.y).max(near.z.max(self.t_min)), t_far)
     }
 }

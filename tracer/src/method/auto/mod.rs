@@ -40,7 +40,7 @@ impl Default for Limits {
     }
 }
 
-/// Any rays through a [`WideBvh`]: 256 together while they agree, 16 while those do, the others alone.
+/// Any rays through a [`WideBvh`]: 256 together while they agree (for closest hits), 16 while those do, the others alone.
 ///
 /// A batch of rays that looks like an image (one origin, rows of equal length) is traced in tiles of 16 x 16 pixels.
 #[derive(Debug, Clone, Copy)]

@@ -74,7 +74,7 @@ impl<Q: Query> Tile<Q> {
             for block in 0..BLOCKS {
                 self.begin::<S::Float16>(block);
             }
-            self.bounds.set_all::<S::Float16>(&self.rays, blocks, !Q::CLOSEST);
+            self.bounds.set_all::<S::Float16>(&self.rays, blocks);
             count.packet();
             self.tile::<S, C>(bvh, Near::of_octant(octant), blocks, count);
             return;
@@ -153,15 +153,14 @@ impl<Q: Query> Tile<Q> {
                 let Some(node) = bvh.nodes.get(child.index()) else { break };
                 count.box_test();
                 let reach = S::Float16::load_block(&self.bounds.reach, 0);
-                let limit = self.bounds.limit(reach);
-                let (t_near, mask) = meet(node, upper, &all, limit.reduce_max());
+                let (t_near, mask) = meet(node, upper, &all, reach.reduce_max());
                 assert!(free + N <= self.stack.len(), "the stack has room for the children of every node on the way");
                 let (bottom, t_near, mut rest) = (free, t_near.to_block(), mask.bitmask());
                 while rest != 0 {
                     let i = rest.trailing_zeros() as usize % N;
                     rest &= rest - 1;
                     let (near, far) = planes(node, upper, i);
-                    let (from, to) = each.between(near, far, limit);
+                    let (from, to) = each.between(near, far, reach);
                     let mut active = active & from.le(to).bitmask() as u16;
                     // Triangles cost more than a box: who comes to a leaf has to meet it.
                     if node.children[i].is_leaf() {
@@ -226,8 +225,7 @@ impl<Q: Query> Tile<Q> {
             } else {
                 let Some(node) = bvh.nodes.get(child.index()) else { break };
                 count.box_test();
-                let limit = self.bounds.limit(self.bounds.reach.0[block]);
-                let (t_near, mask) = meet(node, upper, &all, limit);
+                let (t_near, mask) = meet(node, upper, &all, self.bounds.reach.0[block]);
                 let reach = S::Float16::load_block(&self.rays[block].reach, 0);
                 assert!(free + N <= self.stack.len(), "the stack has room for the children of every node on the way");
                 let (at, t_near, mut rest) = (free, t_near.to_block(), mask.bitmask());
