@@ -34,10 +34,15 @@ row() {
         -m "${methods[@]}" "$ours/$our" -R "$@") |
         awk -F, -v name="$name" -v theirs="$(basename "$1")" -v mine="$(basename "${2:-$1}")" -v scene="$scene" '
             function rate() { for (i = 1; i <= NF; i++) if ($i ~ /^wall_med=|^cpu_med=/) { split($i, p, "="); v[p[1]] = p[2] } return v["cpu_med"] }
-            { set = $2 "_" $3 }
+            # The harness names a set of rays by what follows the first "_" of its file.
+            BEGIN { sub(/^[^_]*_/, "", theirs); sub(/^[^_]*_/, "", mine) }
+            { set = $3 }
             set == theirs && $4 ~ /^embree/ && rate() > best { best = rate(); mode = $4; sub(/.*\//, "", mode) }
             set == mine && $4 !~ /^embree/ { our = rate() }
-            END { printf "| %s | %s | %.2f (%s) | %.2f | %.2f |\n", scene, name, best, mode, our, our / best }'
+            END {
+                if (!best || !our) { print "ray_peers.sh: no figure for " name " in " scene > "/dev/stderr"; exit 1 }
+                printf "| %s | %s | %.2f (%s) | %.2f | %.2f |\n", scene, name, best, mode, our, our / best
+            }'
 }
 
 load=$(cut -d ' ' -f 1 /proc/loadavg)
