@@ -2,6 +2,7 @@
 
 use crate::brute_force;
 use simd::Level;
+use tracer::Scene;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
 use tracer::geometry::{Hit, HitBatch, RayBatch, Triangle};
 use tracer::method::{Auto, BitVec, Context, Limits, Method, Packet, SharedOrigin, Single, SlabForm, Width};
@@ -74,6 +75,30 @@ pub fn check(what: &str, trees: &Trees, levels: &[Level], rays: &RayBatch, expec
             same(&packet.with_shared_origin(SharedOrigin::Always), &format!("{width}"));
             let loose = packet.with_form(SlabForm::Conservative).with_shared_origin(SharedOrigin::Never);
             same(&loose, &format!("{width} conservative"));
+        }
+    }
+}
+
+/// Checks that watertight scenes over trees of two builders find the same, at all levels, in batches and ray by ray.
+///
+/// # Panics
+/// If not, or if the mesh is not valid.
+pub fn check_watertight(what: &str, mesh: &Mesh, levels: &[Level], rays: &RayBatch) {
+    let mut expected = Vec::new();
+    for config in [BuildConfig::default(), BuildConfig::insertion(7)] {
+        for &level in levels {
+            let scene = Scene::builder().mesh(mesh.clone()).watertight(true).level(level).build_config(config);
+            let scene = scene.build().expect("a valid mesh");
+            let method = scene.watertight().expect("asked for");
+            if expected.is_empty() {
+                expected = rays.iter().map(|ray| method.closest_of(&ray)).collect();
+            }
+            for hit in expected.iter().filter(|hit| !hit.is_miss()) {
+                assert!(!hit.t.is_nan() && hit.u >= 0.0 && hit.v >= 0.0, "{what}: {hit:?}");
+            }
+            check_method(&|| format!("{what}, watertight, {config:?}, {level}"), &method, rays, &expected);
+            let same = rays.iter().zip(&expected).all(|(ray, hit)| method.any_of(&ray) != hit.is_miss());
+            assert!(same, "{what}, watertight, {level}: any hit of one ray");
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use simd::Level;
 use tests::Random;
-use tests::agreement::{Trees, by_brute_force, check};
+use tests::agreement::{Trees, by_brute_force, check, check_watertight};
 use tracer::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch};
 use tracer::method::BitVec;
 use tracer::model::Mesh;
@@ -198,6 +198,7 @@ fn hostile_rounds(rounds: std::ops::Range<u64>) {
             for trees in &trees {
                 check(&format!("round {round}, {shape:?} of {number}, {kind}"), trees, &levels, &rays, &expected);
             }
+            check_watertight(&format!("round {round}, {shape:?} of {number}, {kind}"), &mesh, &levels, &rays);
             rays_in_all += rays.len();
             found += expected.iter().filter(|hit| !hit.is_miss()).count();
         }
