@@ -91,8 +91,8 @@ fn parse(bytes: &[u8], level: Level) -> Result<Scene, String> {
         return Err(damaged("its numbers contradict its length".into()));
     }
     let first = (0..meshes).map(|_| words.word()).collect::<Result<Vec<_>, _>>()?;
-    if !first.is_sorted() {
-        return Err(damaged("its meshes overlap".into()));
+    if !first.is_sorted() || first.first().is_some_and(|&first| first != 0) {
+        return Err(damaged("its meshes do not follow each other from triangle 0 on".into()));
     }
     let bounds = Aabb { min: words.floats()?, max: words.floats()? };
     let node = |words: &mut Words| {
@@ -200,6 +200,15 @@ mod tests {
             bytes[at] ^= 0x10;
             fails(&bytes, "the checksum is another");
         }
+    }
+
+    /// No triangle would be before the first mesh: [`Scene::locate`] relies on that.
+    #[test]
+    fn meshes_start_at_zero() {
+        let mut bytes = saved();
+        bytes[HEADER + 12] = 1;
+        let e = parse(&with_checksum(bytes), Level::best()).expect_err("a first triangle of 1");
+        assert!(e.contains("from triangle 0 on"), "{e}");
     }
 
     /// With a checksum that is right, whatever is accepted can be traced.
