@@ -50,12 +50,16 @@
 //! - [`method`]: ways of finding hits, behind one interface.
 //! - [`Scene`]: a tree and a method, ready to be asked: all that most programs need.
 //! - [`render`]: pictures, in three passes.
+//!
+//! Features `glam` and `mint` add conversions to and from the types of those crates: module `interop`.
 #![forbid(unsafe_code)]
 
 pub mod bvh;
 pub mod error;
 pub mod geometry;
 mod hash;
+#[cfg(any(feature = "glam", feature = "mint"))]
+pub mod interop;
 mod lanes;
 pub mod method;
 pub mod model;
