@@ -28,8 +28,17 @@ impl<const N: usize> WideBvh<N> {
         if child.is_leaf() {
             let first = child.groups().0;
             simd::prefetch(&self.groups, first);
+            if let Some(group) = self.groups.get(first) {
+                simd::prefetch(&group.e1, 1);
+                simd::prefetch(&group.e2, 2);
+            }
         } else {
             simd::prefetch(&self.nodes, child.index());
+            if let Some(node) = self.nodes.get(child.index()) {
+                simd::prefetch(&node.planes, 2);
+                simd::prefetch(&node.planes, 4);
+                simd::prefetch(&node.children, 0);
+            }
         }
     }
 
@@ -77,6 +86,12 @@ impl<const N: usize> WideBvh<N> {
         let triangles = groups.iter().flat_map(|group| group.id).filter(|&id| id != Hit::NO_PRIMITIVE).count();
         let depth = depths.iter().copied().max().unwrap_or(0);
         Ok(Self { nodes, groups, triangles, depth })
+    }
+
+    /// The largest distance of a plane from zero.
+    pub(crate) fn largest_coordinate(&self) -> f32 {
+        let planes = self.nodes.first().into_iter().flat_map(|root| root.planes.iter().flatten());
+        planes.map(|plane| plane.abs()).filter(|plane| plane.is_finite()).fold(0.0, f32::max)
     }
 
     /// Memory of nodes and triangles, in bytes.

@@ -1,6 +1,7 @@
 //! Boxes, triangles and rays, and how they meet.
 
 pub(crate) mod aabb;
+pub(crate) mod cull;
 mod hit;
 pub(crate) mod moller_trumbore;
 mod ray;

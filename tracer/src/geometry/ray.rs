@@ -139,6 +139,7 @@ impl RayBatch {
             "arrays of one length: {len} starts, {} ends",
             t_max.len()
         );
+        self.blocks.reserve(len.div_ceil(16));
         let mut i = 0;
         // Ray by ray up to the end of the last block, then block by block.
         while i < len {
@@ -148,19 +149,14 @@ impl RayBatch {
                 i += 1;
                 continue;
             }
-            let mut block = RayBlock::NONE;
-            for axis in 0..3 {
-                block.org[axis].0.copy_from_slice(&org[axis][i..i + 16]);
-                block.dir[axis].0.copy_from_slice(&dir[axis][i..i + 16]);
-            }
-            block.t_min.0.copy_from_slice(&t_min[i..i + 16]);
-            block.t_max.0.copy_from_slice(&t_max[i..i + 16]);
-            let first = [block.org[0].0[0], block.org[1].0[0], block.org[2].0[0]];
-            let same =
-                |axis: usize| block.org[axis].0.iter().fold(0, |d, x| d | (x.to_bits() ^ first[axis].to_bits())) == 0;
+            let sixteen = |v: &[f32]| Block(v[i..].first_chunk().copied().unwrap_or([0.0; 16]));
+            let columns = |v: [&[f32]; 3]| [sixteen(v[0]), sixteen(v[1]), sixteen(v[2])];
+            let org = columns(org);
+            let first = [org[0].0[0], org[1].0[0], org[2].0[0]];
+            let same = |axis: usize| org[axis].0.iter().fold(0, |d, x| d | (x.to_bits() ^ first[axis].to_bits())) == 0;
             let origin = if self.len == 0 { Some(first) } else { self.origin };
             self.origin = origin.filter(|&o| same_bits(o, first) && same(0) && same(1) && same(2));
-            self.blocks.push(block);
+            self.blocks.push(RayBlock { org, dir: columns(dir), t_min: sixteen(t_min), t_max: sixteen(t_max) });
             self.len += 16;
             i += 16;
         }

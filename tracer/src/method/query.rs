@@ -21,6 +21,9 @@ pub(super) trait Query {
         hit: Candidate<F>,
     );
 
+    /// Lanes for which something else may be found.
+    fn open(block: &Self::Block) -> u16;
+
     /// The distance of an entry of the stack, if it matters whether something nearer was hit.
     #[inline(always)]
     fn distance(key: u64) -> f32 {
@@ -53,6 +56,11 @@ impl Query for Closest {
         F::select(mask, hit.u, F::load_block(&block.u, chunk)).store_block(&mut block.u, chunk);
         F::select(mask, hit.v, F::load_block(&block.v, chunk)).store_block(&mut block.v, chunk);
         F::Index::select(mask, primitive, before).store_block(&mut block.primitive, chunk);
+    }
+
+    #[inline(always)]
+    fn open(_: &HitBlock) -> u16 {
+        u16::MAX
     }
 
     #[inline(always)]
@@ -90,6 +98,11 @@ impl Query for Any {
         let t = F::load_block(reach, chunk);
         F::select(hit.mask, F::splat(f32::NEG_INFINITY), t).store_block(reach, chunk);
         *block |= (hit.mask.bitmask() as u16) << (chunk * F::LANES);
+    }
+
+    #[inline(always)]
+    fn open(block: &u16) -> u16 {
+        !block
     }
 
     #[inline(always)]
