@@ -5,7 +5,7 @@ use simd::{Isa, Level};
 use tests::{Random, brute_force, real_scene};
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig};
 use tracer::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
-use tracer::method::{Auto, BitVec, Context, Method, Packet, SharedOrigin, Single, SlabForm, Width};
+use tracer::method::{Auto, BitVec, Context, Method, Order, Packet, SharedOrigin, Single, SlabForm, Width};
 use tracer::model::{Mesh, Model, builtin};
 use tracer::progress::Silent;
 use tracer::render::{EyeRays, Frame, Settings, Surfaces};
@@ -66,6 +66,13 @@ fn check(name: &str, mesh: &Mesh, trees: &[(&str, &Bvh)], rays: &RayBatch, check
                     let method = Packet::new(bvh, level, width).with_form(form).with_shared_origin(shared);
                     check_method(&method, rays, &expected, &what);
                 }
+                let method = Packet::new(bvh, level, width).with_order(Order::NearFirst);
+                check_method(
+                    &method,
+                    rays,
+                    &expected,
+                    &format!("{name}, {tree} tree, {level}, width {width}, near first"),
+                );
             }
         }
         let config = CollapseConfig::default();

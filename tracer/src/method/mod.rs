@@ -9,7 +9,7 @@ mod walk;
 
 pub use crate::lanes::Width;
 pub use auto::{Auto, Limits};
-pub use packet::{Packet, SharedOrigin, SlabForm};
+pub use packet::{Order, Packet, SharedOrigin, SlabForm};
 pub use single::Single;
 pub use walk::{Arity, Wide};
 
