@@ -89,7 +89,7 @@ fn hits_computed_by_hand() {
         assert!(same, "ray {i}: {hit:?} instead of {expected:?}");
     }
     assert_eq!((&report["rays"], &report["hits"], &report["threads"]), (&10.into(), &8.into(), &1.into()));
-    assert_eq!((&report["method"], &report["scene"]), (&"packet".into(), &"squares".into()));
+    assert_eq!((&report["method"], &report["scene"]), (&"auto".into(), &"squares".into()));
     assert_eq!(report["level"], simd::Level::best().to_string());
     for key in ["build_ms", "trace_ms", "wall_ms", "mrays_per_s"] {
         assert!(report[key].as_f64().is_some_and(|n| n >= 0.0), "{key}: {}", report[key]);

@@ -40,6 +40,28 @@ fn the_comparison_as_json() {
 }
 
 #[test]
+fn every_method_finds_the_same() {
+    let folder = Folder::new();
+    let packet = folder.json("render balls:1 --size 64x48 --shadows --json");
+    assert_eq!(packet["method"], "packet");
+    for method in ["ordered", "single4", "single8", "single16", "auto"] {
+        let other = folder.json(&format!("render balls:1 --size 64x48 --shadows --json --method {method}"));
+        assert_eq!(other["method"], method);
+        assert_eq!(
+            (&other["hits_hash"], &other["image_hash"]),
+            (&packet["hits_hash"], &packet["image_hash"]),
+            "{method}"
+        );
+        let report = folder.json(&format!("compare balls:1 --size 64x48 --repeat 1 --format json --method {method}"));
+        assert_eq!(report["all_identical"], true, "{method}");
+        let rows = report["rows"].as_array().expect("rows");
+        let named = rows.iter().filter(|row| row["name"].as_str().is_some_and(|name| name.contains(method))).count();
+        assert_eq!(named, levels().len() * if method == "ordered" { 3 } else { 1 }, "{method}");
+        assert_eq!(rows[0]["hits_hash"], packet["hits_hash"], "{method}");
+    }
+}
+
+#[test]
 fn the_comparison_in_all_formats() {
     let folder = Folder::with("a_&_b.obj", SQUARES);
     let compare = |more: &str| folder.run(&format!("compare a_&_b.obj --size 24x24 --repeat 1 --threads 2 {more}"));

@@ -1,6 +1,7 @@
 //! Options that several subcommands share.
 
 use crate::machine;
+use crate::method::MethodChoice;
 use clap::{Args, ValueEnum};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use simd::Level;
@@ -8,8 +9,8 @@ use std::fmt;
 use std::num::NonZeroUsize;
 use std::str::FromStr;
 use tracer::Error;
-use tracer::bvh::{BuildConfig, Bvh};
-use tracer::method::{Packet, SlabForm, Width};
+use tracer::bvh::BuildConfig;
+use tracer::method::{SlabForm, Width};
 use tracer::model::Camera;
 
 /// What the picture shows.
@@ -46,6 +47,10 @@ pub struct BuildOptions {
 pub struct TraceOptions {
     #[command(flatten)]
     pub level: LevelOption,
+    /// How hits are found: the results are the same, the speed is not [default: packet to render; auto to trace, unless --width or
+    /// --slab is given]
+    #[arg(long, value_name = "METHOD", value_enum)]
+    pub method: Option<MethodChoice>,
     /// Rays per packet: auto, 1, 4, 8 or 16
     #[arg(long, value_name = "RAYS", default_value_t)]
     pub width: Width,
@@ -153,12 +158,20 @@ pub enum Slab {
 }
 
 impl TraceOptions {
-    pub fn method<'a>(&self, bvh: &'a Bvh, level: Level) -> Packet<'a> {
-        let form = match self.slab {
+    /// The form of the box test.
+    pub fn form(&self) -> SlabForm {
+        match self.slab {
             Slab::Exact => SlabForm::Exact,
             Slab::Conservative => SlabForm::Conservative,
-        };
-        Packet::new(bvh, level, self.width).with_form(form)
+        }
+    }
+
+    /// The method that was asked for, else `usual`; packets where only these have the options that were given.
+    pub fn method(&self, usual: MethodChoice) -> Result<MethodChoice, Error> {
+        if let Some(method) = self.method {
+            return method.check(self.width, self.form()).map(|()| method);
+        }
+        Ok(if usual.check(self.width, self.form()).is_ok() { usual } else { MethodChoice::Packet })
     }
 }
 
