@@ -133,7 +133,8 @@ impl<'a> SceneBuilder<'a> {
         Self { level, ..self }
     }
 
-    /// With another builder of trees than the default.
+    /// With another builder of trees than the default: [`BuildConfig::fast`], [`BuildConfig::medium`] (the default),
+    /// [`BuildConfig::high`]. The hits are the same.
     pub fn build_config(self, config: BuildConfig) -> Self {
         Self { config, ..self }
     }

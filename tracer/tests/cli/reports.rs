@@ -100,10 +100,14 @@ fn what_the_machine_has() {
     );
 
     let scene = folder.json("info balls:1 --json")["scene"].clone();
-    assert_eq!((&scene["triangles"], &scene["build"]), (&1922.into(), &"binned".into()));
+    assert_eq!((&scene["triangles"], &scene["build"]), (&1922.into(), &"medium".into()));
     assert!(scene["bytes_per_triangle"].as_f64().is_some_and(|b| b > 48.0 && b < 130.0), "{scene}");
     let insertion = folder.json("info balls:1 --json --build insertion")["scene"].clone();
     assert!(insertion["sah_cost"].as_f64() > scene["sah_cost"].as_f64(), "{insertion} {scene}");
+    let of = |build: &str| folder.json(&format!("info balls:1 --json --build {build}"))["scene"].clone();
+    let cost = |build: &str| of(build)["sah_cost"].as_f64().expect("a cost");
+    assert!(cost("high") < cost("medium") && cost("medium") < cost("fast"));
+    assert_eq!((&of("binned")["build"], &of("high")["build"]), (&"medium".into(), &"high".into()));
     assert!(folder.run("info rings:1").contains("6,242"));
     assert!(folder.files().is_empty());
 }

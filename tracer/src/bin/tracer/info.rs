@@ -16,7 +16,8 @@ use tracer::geometry::Triangle;
 #[command(after_help = "\
 Examples:
   tracer info                                       CPU and levels
-  tracer info rings --build insertion               the paper's tree")]
+  tracer info rings --build insertion               the paper's tree
+  tracer info rings --build high                    the best tree")]
 pub struct Args {
     /// A file or a built-in scene; without one, only the machine is shown
     scene: Option<String>,

@@ -3,7 +3,10 @@
 pub mod binned;
 mod bins;
 pub mod insertion;
+pub mod linear;
+mod part;
 mod primitive;
+pub mod reinsertion;
 mod sah;
 mod sweep;
 #[cfg(test)]
@@ -22,23 +25,53 @@ use rayon::prelude::*;
 pub enum BuildConfig {
     /// Top down by the surface area heuristic over bins: the default, fast to build and to traverse. See [`binned`].
     Binned(binned::Config),
+    /// Along a space-filling curve: the fastest to build. See [`linear`].
+    Linear(linear::Config),
+    /// As [`BuildConfig::Binned`], then improved by moving subtrees: the slowest to build, the fastest to traverse. See [`reinsertion`].
+    Reinsertion(reinsertion::Config),
     /// One triangle after the other, as in Geimer & Müller 2003, section 3.3: for comparison with the paper. See [`insertion`].
     Insertion(insertion::Config),
 }
 
 impl Default for BuildConfig {
     fn default() -> Self {
-        Self::Binned(binned::Config::default())
+        Self::medium()
     }
 }
 
 impl BuildConfig {
+    /// For a tree that is built often and used little.
+    #[must_use]
+    pub fn fast() -> Self {
+        Self::Linear(linear::Config::default())
+    }
+
+    /// The default: a good tree, soon.
+    #[must_use]
+    pub fn medium() -> Self {
+        Self::Binned(binned::Config::default())
+    }
+
+    /// For a tree that is built once and used much.
+    #[must_use]
+    pub fn high() -> Self {
+        Self::Reinsertion(reinsertion::Config::default())
+    }
+
     /// The paper's insertion builder, its order of insertion shuffled from `seed`.
     #[must_use]
     pub fn insertion(seed: u64) -> Self {
         Self::Insertion(insertion::Config { seed: Some(seed), ..Default::default() })
     }
 }
+
+/// No leaf is deeper (the root is at depth 0) in trees that are built top down: where only balanced splits still fit, splits are
+/// balanced.
+pub const MAX_DEPTH: u32 = 64;
+
+/// Larger ranges of primitives are worked on in pieces of this size, in parallel. Constant, so that the result is the same for any
+/// number of threads.
+const PIECE: usize = 8192;
 
 /// What a builder returns: the nodes, and the ids of the triangles in the order of the leaves.
 struct Tree {
@@ -49,8 +82,8 @@ struct Tree {
 impl Bvh {
     /// Builds the tree over the triangles of `mesh` that are not degenerate; empty when all are.
     ///
-    /// Runs on the current rayon pool. The tree does not depend on the number of its threads. Progress is one stage,
-    /// `"build"`, in triangles.
+    /// Runs on the current rayon pool. The tree does not depend on the number of its threads. Progress is a stage
+    /// `"build"` in triangles, and for [`BuildConfig::Reinsertion`] a second, `"optimize"`, in rounds.
     ///
     /// # Errors
     /// [`Error::Geometry`] as [`Mesh::validate`] has it, [`Error::Cancelled`] when `progress` says so.
@@ -64,6 +97,8 @@ impl Bvh {
         let Tree { nodes, ids } = match config {
             _ if primitives.is_empty() => Tree { nodes: Vec::new(), ids: Vec::new() },
             BuildConfig::Binned(config) => binned::build(primitives, config, progress)?,
+            BuildConfig::Linear(config) => linear::build(primitives, config, progress)?,
+            BuildConfig::Reinsertion(config) => reinsertion::build(primitives, config, progress)?,
             BuildConfig::Insertion(config) => insertion::build(primitives, config, progress)?,
         };
         progress.check()?;
@@ -74,7 +109,7 @@ impl Bvh {
 
 /// The mesh's triangle `id`, as it is stored.
 #[inline]
-fn triangle(mesh: &Mesh, id: u32) -> Triangle {
+pub(super) fn triangle(mesh: &Mesh, id: u32) -> Triangle {
     let i = id as usize;
     Triangle::new(mesh.triangle(i), id, mesh.material(i))
 }
