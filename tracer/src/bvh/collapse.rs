@@ -217,41 +217,10 @@ mod tests {
         Bvh::build(&scene.mesh, config, &Silent).expect("a valid mesh")
     }
 
-    /// Every triangle is in one leaf, every box holds what is below it, and no way down is longer than it says.
     fn check<const N: usize>(bvh: &Bvh, config: &CollapseConfig) {
         let wide = bvh.collapse::<N>(config);
-        let (mut ids, mut todo, mut nodes) = (Vec::new(), vec![(0, 1)], 0);
-        while let Some((i, depth)) = todo.pop() {
-            assert!(depth <= wide.depth);
-            nodes += 1;
-            let node = &wide.nodes[i];
-            let bounds = |n: &WideNode<N>, k: usize| Aabb {
-                min: [0, 1, 2].map(|axis| n.planes[axis][k]),
-                max: [3, 4, 5].map(|axis| n.planes[axis][k]),
-            };
-            for (k, &child) in node.children.iter().enumerate().filter(|(_, child)| **child != Child::NONE) {
-                let mut below = Aabb::EMPTY;
-                if child.is_leaf() {
-                    let (first, end) = child.groups();
-                    for group in &wide.groups[first..end] {
-                        for lane in (0..GROUP).filter(|&lane| group.id[lane] != Hit::NO_PRIMITIVE) {
-                            ids.push(group.id[lane]);
-                            let of = |v: &[[f32; GROUP]; 3]| [v[0][lane], v[1][lane], v[2][lane]];
-                            let (v0, e1, e2) = (of(&group.v0), of(&group.e1), of(&group.e2));
-                            let at = |e: [f32; 3]| [v0[0] + e[0], v0[1] + e[1], v0[2] + e[2]];
-                            below = below.union(&Aabb::of_points([v0, at(e1), at(e2)]));
-                        }
-                    }
-                } else {
-                    let inner = &wide.nodes[child.index()];
-                    let used = (0..N).filter(|&k| inner.children[k] != Child::NONE);
-                    below = used.fold(below, |b, k| b.union(&bounds(inner, k)));
-                    todo.push((child.index(), depth + 1));
-                }
-                assert_eq!(below, bounds(node, k), "the box of child {k} of node {i}");
-            }
-        }
-        assert_eq!(nodes, wide.nodes.len(), "every node is reached once");
+        wide.validate().unwrap_or_else(|e| panic!("{config:?}: {e}"));
+        let mut ids: Vec<u32> = wide.groups.iter().flat_map(|g| g.id).filter(|&id| id != Hit::NO_PRIMITIVE).collect();
         ids.sort_unstable();
         let mut expected: Vec<u32> = bvh.triangles.iter().map(|t| t.id).collect();
         expected.sort_unstable();
@@ -260,8 +229,10 @@ mod tests {
 
     #[test]
     fn wide_trees_hold_what_binary_trees_hold() {
-        let builders = [BuildConfig::default(), BuildConfig::insertion(7)];
-        for (spec, builder) in [("balls:1", 0), ("rings:1", 1), ("tree:3", 0), ("tree:3", 1)] {
+        let builders = [BuildConfig::default(), BuildConfig::insertion(7), BuildConfig::fast(), BuildConfig::high()];
+        for (spec, builder) in
+            [("balls:1", 0), ("rings:1", 1), ("tree:3", 0), ("tree:3", 1), ("tree:3", 2), ("tree:3", 3)]
+        {
             let bvh = tree(spec, &builders[builder]);
             for node_cost in [0.0, 0.3, 1.0, 100.0] {
                 for max_leaf in [0, 4, 1000] {

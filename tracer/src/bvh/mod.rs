@@ -3,7 +3,9 @@
 pub mod build;
 mod collapse;
 mod node;
+mod refit;
 mod stats;
+mod validate;
 mod wide;
 
 pub use build::BuildConfig;
