@@ -1,6 +1,7 @@
 //! Wide trees: nodes of `N` children whose boxes lie side by side, for a single ray against all of them at once (Dammertz, Hanika
 //! and Keller 2008; Ernst and Greiner 2008; Wald, Benthin and Boulos 2008).
 
+use super::validate::structure;
 use crate::geometry::{Aabb, Hit, TriangleGroup};
 
 /// A tree of `N` children a node (4, 8 or 16), over groups of [`WideBvh::GROUP`] triangles. Made from a [`Bvh`](super::Bvh).
@@ -47,44 +48,8 @@ impl<const N: usize> WideBvh<N> {
     /// # Errors
     /// The first fault, in words.
     pub(crate) fn from_parts(nodes: Vec<WideNode<N>>, groups: Vec<TriangleGroup<GROUP>>) -> Result<Self, String> {
-        if nodes.len() >= Child::LEAF as usize {
-            return Err(format!("{} nodes are too many", nodes.len()));
-        }
-        // Depth of each node, once its parent was seen: children come after their parents, so that there is no circle.
-        let mut depths = vec![0; nodes.len()];
-        if let Some(root) = depths.first_mut() {
-            *root = 1;
-        }
-        for (i, node) in nodes.iter().enumerate() {
-            if depths[i] == 0 {
-                return Err(format!("node {i} has no parent before it"));
-            }
-            let below = depths[i] + 1;
-            for (slot, &child) in node.children.iter().enumerate() {
-                let plane = |k: usize| node.planes[k][slot];
-                let empty = (0..3).all(|k| plane(k) == f32::INFINITY && plane(k + 3) == f32::NEG_INFINITY);
-                let boxed =
-                    (0..3).all(|k| plane(k) <= plane(k + 3) && plane(k).is_finite() && plane(k + 3).is_finite());
-                if child == Child::NONE {
-                    if !empty {
-                        return Err(format!("node {i} has a box without a child"));
-                    }
-                } else if !boxed {
-                    return Err(format!("node {i} has a child without a box"));
-                } else if child.is_leaf() {
-                    if child.groups().1 > groups.len() {
-                        return Err(format!("a leaf of node {i} has triangles beyond the end"));
-                    }
-                } else {
-                    match depths.get_mut(child.index()) {
-                        Some(depth) if *depth == 0 => *depth = below,
-                        _ => return Err(format!("node {i} has a child that is none")),
-                    }
-                }
-            }
-        }
+        let depth = structure(&nodes, groups.len())?;
         let triangles = groups.iter().flat_map(|group| group.id).filter(|&id| id != Hit::NO_PRIMITIVE).count();
-        let depth = depths.iter().copied().max().unwrap_or(0);
         Ok(Self { nodes, groups, triangles, depth })
     }
 
@@ -125,6 +90,15 @@ impl<const N: usize> WideNode<N> {
         children: [Child::NONE; N],
     };
 
+    /// The box of a child.
+    ///
+    /// # Panics
+    /// If `i >= N`.
+    #[must_use]
+    pub fn bounds(&self, i: usize) -> Aabb {
+        Aabb { min: [0, 1, 2].map(|axis| self.planes[axis][i]), max: [3, 4, 5].map(|axis| self.planes[axis][i]) }
+    }
+
     /// With another child.
     pub(super) fn set(&mut self, i: usize, bounds: &Aabb, child: Child) {
         for axis in 0..3 {
@@ -142,7 +116,7 @@ pub struct Child(u32);
 impl Child {
     /// No child.
     pub const NONE: Self = Self(u32::MAX);
-    const LEAF: u32 = 1 << 31;
+    pub(super) const LEAF: u32 = 1 << 31;
     /// Most groups in a leaf.
     pub const MAX_GROUPS: usize = 8;
 

@@ -4,7 +4,7 @@ mod file;
 
 use crate::Error;
 use crate::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
-use crate::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch};
+use crate::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
 use crate::method::{Auto, BitVec, Context, Method, Single};
 use crate::model::Mesh;
 use crate::progress::{Progress, Silent};
@@ -39,7 +39,13 @@ pub struct Scene {
 impl Scene {
     /// Starts a scene.
     pub fn builder<'a>() -> SceneBuilder<'a> {
-        SceneBuilder { meshes: Vec::new(), level: Level::best(), config: BuildConfig::default(), progress: &Silent }
+        SceneBuilder {
+            meshes: Vec::new(),
+            level: Level::best(),
+            config: BuildConfig::default(),
+            budget: u64::MAX,
+            progress: &Silent,
+        }
     }
 
     /// The first hit of a ray. (What an unusual ray does: see [`Ray`].)
@@ -90,8 +96,53 @@ impl Scene {
     /// Which mesh, in the order they were added, and which of its triangles a hit's primitive is.
     #[must_use]
     pub fn locate(&self, primitive: u32) -> (usize, u32) {
-        let mesh = self.first.partition_point(|&first| first <= primitive).saturating_sub(1);
-        (mesh, primitive - self.first.get(mesh).copied().unwrap_or_default())
+        locate(&self.first, primitive)
+    }
+
+    /// Takes meshes whose vertices moved in the place of those that the scene was built of, in the same order: much faster than
+    /// building, with the hits of a scene that is built anew, bit for bit. Rays find them the slower the further vertices moved against each
+    /// other. A triangle that has become [degenerate](crate::geometry::Triangle::is_degenerate) is not hit any more, and comes back
+    /// when it is none in a later call.
+    ///
+    /// ```
+    /// use tracer::{Scene, geometry::Ray, model::Mesh};
+    ///
+    /// # fn main() -> Result<(), tracer::Error> {
+    /// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mut mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
+    /// let mut scene = Scene::builder().mesh(mesh.clone()).build()?;
+    /// mesh.positions.iter_mut().for_each(|p| p[2] += 0.5);
+    /// scene.refit(&[mesh])?;
+    /// let hit = scene.closest(&Ray::new([0.25, 0.25, 2.0], [0.0, 0.0, -1.0]));
+    /// assert_eq!(hit.map(|hit| hit.t), Some(1.5));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Geometry`], and the scene stays as it was: when a mesh is not acceptable; when there are other meshes, or other numbers of triangles in
+    /// them, than the scene was built of; when a triangle was degenerate then and is not any more. Build the scene again then.
+    pub fn refit(&mut self, meshes: &[Mesh]) -> Result<(), Error> {
+        validate(meshes)?;
+        let mut number = 0;
+        let same = meshes.len() == self.first.len()
+            && meshes.iter().zip(&self.first).all(|(mesh, &first)| {
+                let starts_there = number == first as usize;
+                number += mesh.triangles.len();
+                starts_there
+            });
+        if !same {
+            return Err(Error::Geometry(
+                "other meshes, or other numbers of triangles, than the scene was built of: build it again".into(),
+            ));
+        }
+        let first = &self.first;
+        self.bvh.refit_to(number, |id| {
+            let (mesh, local) = locate(first, id);
+            Triangle::new(meshes[mesh].triangle(local as usize), id, 0)
+        })?;
+        self.bounds = meshes.iter().fold(Aabb::EMPTY, |b, mesh| b.union(&mesh.bounds()));
+        Ok(())
     }
 
     /// The box around all vertices.
@@ -113,6 +164,7 @@ pub struct SceneBuilder<'a> {
     meshes: Vec<Mesh>,
     level: Level,
     config: BuildConfig,
+    budget: u64,
     progress: &'a dyn Progress,
 }
 
@@ -133,9 +185,16 @@ impl<'a> SceneBuilder<'a> {
         Self { level, ..self }
     }
 
-    /// With another builder of trees than the default.
+    /// With another builder of trees than the default: [`BuildConfig::fast`], [`BuildConfig::medium`] (the default),
+    /// [`BuildConfig::high`]. The hits are the same.
     pub fn build_config(self, config: BuildConfig) -> Self {
         Self { config, ..self }
+    }
+
+    /// Refuses to build when that would take more than this many bytes of memory at once, beside the meshes, as
+    /// [`BuildConfig::peak_bytes`] has it.
+    pub fn memory_budget(self, bytes: u64) -> Self {
+        Self { budget: bytes, ..self }
     }
 
     /// Tells of the progress of [`SceneBuilder::build`], and can cancel it.
@@ -146,11 +205,11 @@ impl<'a> SceneBuilder<'a> {
     /// Builds the tree, on the threads of the current rayon pool.
     ///
     /// # Errors
-    /// [`Error::Geometry`] with the mesh and its vertex or triangle at fault; [`Error::Cancelled`].
+    /// [`Error::Geometry`] with the mesh and its vertex or triangle at fault; [`Error::Usage`] when the memory budget does not suffice, before
+    /// memory is asked for; [`Error::Cancelled`].
     pub fn build(self) -> Result<Scene, Error> {
-        for (i, mesh) in self.meshes.iter().enumerate() {
-            mesh.validate().map_err(|e| Error::Geometry(format!("mesh {i}: {e}")))?;
-        }
+        validate(&self.meshes)?;
+        self.check_budget()?;
         let mut first = Vec::with_capacity(self.meshes.len());
         let mut all = Mesh::default();
         for mesh in self.meshes {
@@ -167,6 +226,34 @@ impl<'a> SceneBuilder<'a> {
         let bvh = Bvh::build(&all, &self.config, self.progress)?;
         Ok(Scene { bvh: bvh.collapse(&CollapseConfig::default()), level: self.level, bounds: all.bounds(), first })
     }
+}
+
+impl SceneBuilder<'_> {
+    fn check_budget(&self) -> Result<(), Error> {
+        let triangles = self.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        let needed = self.config.peak_bytes(triangles);
+        if needed <= self.budget {
+            return Ok(());
+        }
+        let least = BuildConfig::medium().peak_bytes(triangles);
+        let advice =
+            if least <= self.budget { "take BuildConfig::medium()" } else { "raise it or take fewer triangles" };
+        Err(Error::Usage(format!(
+            "to build a tree over {triangles} triangles takes up to {needed} bytes of memory, the budget is {}: {advice}",
+            self.budget
+        )))
+    }
+}
+
+fn validate(meshes: &[Mesh]) -> Result<(), Error> {
+    let named = |(i, mesh): (usize, &Mesh)| mesh.validate().map_err(|e| Error::Geometry(format!("mesh {i}: {e}")));
+    meshes.iter().enumerate().try_for_each(named)
+}
+
+/// Which mesh, and which of its triangles, when these are the first ones of the meshes.
+fn locate(first: &[u32], primitive: u32) -> (usize, u32) {
+    let mesh = first.partition_point(|&first| first <= primitive).saturating_sub(1);
+    (mesh, primitive - first.get(mesh).copied().unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -214,6 +301,56 @@ mod tests {
                 assert_eq!(scene.occluded(&ray), occluded.get(i), "{level}, ray {i}");
             }
         }
+    }
+
+    #[test]
+    fn moved_meshes_are_as_if_built_anew() {
+        let balls = crate::model::builtin("balls:1").expect("a name").expect("a size").mesh;
+        let mut meshes = [square(0.0), balls, square(2.0)];
+        let build = |meshes: &[Mesh]| {
+            let builder = meshes.iter().fold(Scene::builder(), |builder, mesh| builder.mesh(mesh.clone()));
+            builder.build().expect("valid meshes")
+        };
+        let mut scene = build(&meshes);
+        meshes.iter_mut().zip([0.1, 0.2, 0.3]).for_each(|(mesh, by)| {
+            mesh.positions.iter_mut().for_each(|p| *p = [p[0] + by * p[1], p[1] - 0.1 * p[0] * p[2], p[2] + by]);
+        });
+        scene.refit(&meshes).expect("the same meshes");
+        let new = build(&meshes);
+        let rays: RayBatch = (0..900)
+            .map(|i| Ray::new([(i % 30) as f32 * 0.1 - 1.5, (i / 30) as f32 * 0.1 - 1.5, 5.0], [0.01, 0.02, -1.0]))
+            .collect();
+        let hash = |scene: &Scene| {
+            let mut hits = HitBatch::new();
+            scene.closest_batch(&rays, &mut hits);
+            hits.hash()
+        };
+        assert_eq!((hash(&scene), scene.bounds()), (hash(&new), new.bounds()));
+        scene.bvh.validate().expect("a tree that is well-formed");
+
+        meshes.swap(0, 1);
+        let e = scene.refit(&meshes).expect_err("other numbers of triangles");
+        assert!(e.to_string().contains("build it again"), "{e}");
+        assert!(scene.refit(&meshes[..2]).is_err());
+        meshes.swap(0, 1);
+        meshes[2].triangles.pop();
+        assert!(scene.refit(&meshes).expect_err("fewer").to_string().contains("build the tree again"));
+        meshes[1].positions[7][2] = f32::NAN;
+        assert!(scene.refit(&meshes).expect_err("NaN").to_string().starts_with("mesh 1: vertex 7"));
+        assert_eq!(hash(&scene), hash(&new));
+    }
+
+    #[test]
+    fn a_budget_is_kept() {
+        let build = |budget: u64, config| {
+            Scene::builder().mesh(square(0.0)).mesh(square(1.0)).memory_budget(budget).build_config(config).build()
+        };
+        let needed = BuildConfig::high().peak_bytes(4);
+        build(needed, BuildConfig::high()).expect("enough");
+        let e = build(needed - 1, BuildConfig::high()).expect_err("too little").to_string();
+        assert!(e.contains(&format!("up to {needed} bytes")) && e.contains("take BuildConfig::medium()"), "{e}");
+        let e = build(100, BuildConfig::fast()).expect_err("far too little");
+        assert!(matches!(&e, Error::Usage(message) if message.contains("raise it")), "{e}");
     }
 
     #[test]

@@ -97,8 +97,9 @@ fn options_that_make_no_sense() {
         folder.fails(&format!("{command} --level mmx"), 2, &["unknown level 'mmx'", "avx512"]);
         folder.fails(&format!("{command} --threads 0"), 2, &["--threads"]);
         folder.fails(&format!("{command} --threads 1000000"), 2, &["--threads 1000000", "4096"]);
-        folder.fails(&format!("{command} --build best"), 2, &["binned, insertion"]);
+        folder.fails(&format!("{command} --build best"), 2, &["fast, medium, high, insertion"]);
         folder.fails(&format!("{command} --seed 1"), 2, &["--build insertion"]);
+        folder.fails(&format!("{command} --seed 1 --build high"), 2, &["--build insertion"]);
         folder.fails(&format!("{command} --what"), 2, &["--what"]);
     }
     folder.fails("render s.obj --method best", 2, &["packet, ordered, single4"]);

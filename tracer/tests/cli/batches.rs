@@ -122,7 +122,17 @@ fn the_same_bytes_whatever_traces() {
     assert!((300..999).contains(&number), "{number} hits");
     let mut ways: Vec<String> =
         levels().iter().flat_map(|l| ["4", "8", "16"].map(|w| format!("--level {l} --width {w}"))).collect();
-    ways.extend(["--threads 3", "--build insertion --seed 9", "--slab conservative", "--repeat 2"].map(String::from));
+    ways.extend(
+        [
+            "--threads 3",
+            "--build insertion --seed 9",
+            "--build fast",
+            "--build high",
+            "--slab conservative",
+            "--repeat 2",
+        ]
+        .map(String::from),
+    );
     for way in ways {
         folder.run(&format!("trace balls:1 --rays rays.npy --hits hits.npy {way}"));
         assert!(folder.read("hits.npy") == first, "{way}");
