@@ -29,14 +29,14 @@ enum Fate {
     Node,
 }
 
-/// Costs of a subtree.
+/// What was found best for a subtree.
 #[derive(Clone, Copy)]
 struct Best<const N: usize> {
-    /// `cost[i]`: as at most `i + 1` children of a wide node above it.
-    cost: [f32; N],
-    /// `left[i]`: how many of these the first child gets; 0 where fewer cost no more.
+    /// `left[i]`: as at most `i + 1` children of a wide node above it, how many of these the first child gets; 0 where fewer cost no more.
     left: [u8; N],
     fate: Fate,
+    /// First triangle and number of triangles.
+    triangles: (u32, u32),
 }
 
 impl Bvh {
@@ -49,8 +49,7 @@ impl Bvh {
             return wide;
         }
         let nodes = &*self.in_twos();
-        let ranges = ranges(nodes);
-        let best = costs::<N>(nodes, config, &ranges);
+        let best = best::<N>(nodes, config);
         wide.nodes.push(WideNode::EMPTY);
         let emit = Emit { nodes, best: &best };
         // Even when the whole tree is one leaf there is a node above it.
@@ -67,7 +66,7 @@ impl Bvh {
             }
             for (i, &root) in roots.iter().enumerate() {
                 let child = if best[root].fate == Fate::Leaf {
-                    leaves.add(ranges[root])
+                    leaves.add(best[root].triangles)
                 } else {
                     wide.nodes.push(WideNode::EMPTY);
                     todo.push((wide.nodes.len() - 1, root, depth + 1));
@@ -77,7 +76,7 @@ impl Bvh {
             }
         }
         // Before there are groups, which take as much.
-        drop((best, ranges));
+        drop(best);
         wide.nodes.shrink_to_fit();
         wide.groups.reserve_exact(leaves.groups);
         for (first, number) in leaves.ranges {
@@ -129,28 +128,23 @@ impl Bvh {
     }
 }
 
-/// First triangle and number of triangles of each subtree.
-fn ranges(nodes: &[Node]) -> Vec<(u32, u32)> {
-    let mut ranges = vec![(0, 0); nodes.len()];
-    for (i, node) in nodes.iter().enumerate().rev() {
-        ranges[i] = node.triangles();
-        if ranges[i].1 == 0 {
-            let [a, b] = children(nodes, i);
-            ranges[i] = (ranges[a].0, ranges[a].1 + ranges[b].1);
-        }
-    }
-    ranges
-}
-
-fn costs<const N: usize>(nodes: &[Node], config: &CollapseConfig, ranges: &[(u32, u32)]) -> Vec<Best<N>> {
-    let mut best = vec![Best { cost: [0.0; N], left: [0; N], fate: Fate::Leaf }; nodes.len()];
+fn best<const N: usize>(nodes: &[Node], config: &CollapseConfig) -> Vec<Best<N>> {
+    let mut best = vec![Best { left: [0; N], fate: Fate::Leaf, triangles: (0, 0) }; nodes.len()];
     let max_leaf = config.max_leaf.min(GROUP * Child::MAX_GROUPS);
+    // Costs of the subtrees that have no parent yet, as at most 1, 2, ... children: from the last node to the first the children of a
+    // node lie on top, the first above the second.
+    let mut waiting: Vec<[f32; N]> = Vec::new();
     for (i, node) in nodes.iter().enumerate().rev() {
-        let (area, number) = (node.bounds().half_area(), ranges[i].1 as usize);
-        let groups = number.div_ceil(GROUP) as f32;
-        let mut this = Best { cost: [area * groups; N], left: [0; N], fate: Fate::Leaf };
-        if node.triangles().1 == 0 {
-            let [a, b] = children(nodes, i).map(|child| &best[child].cost);
+        let area = node.bounds().half_area();
+        let groups = |number: u32| (number as usize).div_ceil(GROUP) as f32;
+        let mut this = Best { left: [0; N], fate: Fate::Leaf, triangles: node.triangles() };
+        let mut costs = [area * groups(this.triangles.1); N];
+        let below = if this.triangles.1 == 0 { waiting.pop().zip(waiting.pop()) } else { None };
+        if let Some((a, b)) = below {
+            let [first, second] = children(nodes, i).map(|child| best[child].triangles);
+            let number = first.1 + second.1;
+            this.triangles = (first.0, number);
+            costs[0] = area * groups(number);
             // As `k + 1` children: from those of both sides.
             for k in 1..N {
                 let (mut cost, mut left) = (f32::INFINITY, 1);
@@ -160,19 +154,20 @@ fn costs<const N: usize>(nodes: &[Node], config: &CollapseConfig, ranges: &[(u32
                         (cost, left) = (sum, l + 1);
                     }
                 }
-                (this.cost[k], this.left[k]) = (cost, left as u8);
+                (costs[k], this.left[k]) = (cost, left as u8);
             }
-            let as_node = this.cost[N - 1] + area * config.node_cost;
-            if number > max_leaf || as_node < this.cost[0] {
-                this.cost[0] = as_node;
+            let as_node = costs[N - 1] + area * config.node_cost;
+            if number as usize > max_leaf || as_node < costs[0] {
+                costs[0] = as_node;
                 this.fate = Fate::Node;
             }
             for k in 1..N {
-                if this.cost[k - 1] <= this.cost[k] {
-                    (this.cost[k], this.left[k]) = (this.cost[k - 1], 0);
+                if costs[k - 1] <= costs[k] {
+                    (costs[k], this.left[k]) = (costs[k - 1], 0);
                 }
             }
         }
+        waiting.push(costs);
         best[i] = this;
     }
     best
