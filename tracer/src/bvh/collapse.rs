@@ -3,7 +3,7 @@
 
 use super::wide::GROUP;
 use super::{Bvh, Child, Node, WideBvh, WideNode};
-use crate::geometry::{Aabb, Triangle, TriangleGroup};
+use crate::geometry::{Aabb, TriangleGroup};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -52,10 +52,11 @@ impl Bvh {
         let ranges = ranges(nodes);
         let best = costs::<N>(nodes, config, &ranges);
         wide.nodes.push(WideNode::EMPTY);
-        let emit = Emit { nodes, triangles: &self.triangles, best: &best, ranges: &ranges };
+        let emit = Emit { nodes, best: &best };
         // Even when the whole tree is one leaf there is a node above it.
         let mut todo = vec![(0, 0, 1)];
         let mut roots = Vec::with_capacity(N);
+        let mut leaves = Leaves::default();
         while let Some((at, binary, depth)) = todo.pop() {
             wide.depth = wide.depth.max(depth);
             roots.clear();
@@ -66,7 +67,7 @@ impl Bvh {
             }
             for (i, &root) in roots.iter().enumerate() {
                 let child = if best[root].fate == Fate::Leaf {
-                    emit.leaf(root, &mut wide.groups)
+                    leaves.add(ranges[root])
                 } else {
                     wide.nodes.push(WideNode::EMPTY);
                     todo.push((wide.nodes.len() - 1, root, depth + 1));
@@ -74,6 +75,14 @@ impl Bvh {
                 };
                 wide.nodes[at].set(i, &nodes[root].bounds(), child);
             }
+        }
+        // Before there are groups, which take as much.
+        drop((best, ranges));
+        wide.nodes.shrink_to_fit();
+        wide.groups.reserve_exact(leaves.groups);
+        for (first, number) in leaves.ranges {
+            let triangles = &self.triangles[first as usize..][..number as usize];
+            wide.groups.extend(triangles.chunks(GROUP).map(TriangleGroup::new));
         }
         wide
     }
@@ -176,9 +185,7 @@ fn children(nodes: &[Node], i: usize) -> [usize; 2] {
 
 struct Emit<'a, const N: usize> {
     nodes: &'a [Node],
-    triangles: &'a [Triangle],
     best: &'a [Best<N>],
-    ranges: &'a [(u32, u32)],
 }
 
 impl<const N: usize> Emit<'_, N> {
@@ -194,13 +201,23 @@ impl<const N: usize> Emit<'_, N> {
             if room == 1 || whole { roots.push(child) } else { self.open(child, room, roots) }
         }
     }
+}
 
-    fn leaf(&self, i: usize, groups: &mut Vec<TriangleGroup<GROUP>>) -> Child {
-        let (first, number) = self.ranges[i];
-        let triangles = &self.triangles[first as usize..][..number as usize];
-        let at = groups.len();
-        groups.extend(triangles.chunks(GROUP).map(TriangleGroup::new));
-        Child::leaf(at, groups.len() - at)
+/// Leaves whose triangles are not yet in groups.
+#[derive(Default)]
+struct Leaves {
+    /// First triangle and number of triangles of each.
+    ranges: Vec<(u32, u32)>,
+    /// Number of groups.
+    groups: usize,
+}
+
+impl Leaves {
+    fn add(&mut self, range: (u32, u32)) -> Child {
+        let number = (range.1 as usize).div_ceil(GROUP);
+        self.ranges.push(range);
+        self.groups += number;
+        Child::leaf(self.groups - number, number)
     }
 }
 

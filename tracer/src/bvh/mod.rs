@@ -2,6 +2,7 @@
 
 pub mod build;
 mod collapse;
+mod epo;
 mod node;
 mod refit;
 mod stats;

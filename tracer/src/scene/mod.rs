@@ -39,7 +39,13 @@ pub struct Scene {
 impl Scene {
     /// Starts a scene.
     pub fn builder<'a>() -> SceneBuilder<'a> {
-        SceneBuilder { meshes: Vec::new(), level: Level::best(), config: BuildConfig::default(), progress: &Silent }
+        SceneBuilder {
+            meshes: Vec::new(),
+            level: Level::best(),
+            config: BuildConfig::default(),
+            budget: u64::MAX,
+            progress: &Silent,
+        }
     }
 
     /// The first hit of a ray. (What an unusual ray does: see [`Ray`].)
@@ -158,6 +164,7 @@ pub struct SceneBuilder<'a> {
     meshes: Vec<Mesh>,
     level: Level,
     config: BuildConfig,
+    budget: u64,
     progress: &'a dyn Progress,
 }
 
@@ -184,6 +191,12 @@ impl<'a> SceneBuilder<'a> {
         Self { config, ..self }
     }
 
+    /// Refuses to build when that would take more than this many bytes of memory at once, beside the meshes, as
+    /// [`BuildConfig::peak_bytes`] has it.
+    pub fn memory_budget(self, bytes: u64) -> Self {
+        Self { budget: bytes, ..self }
+    }
+
     /// Tells of the progress of [`SceneBuilder::build`], and can cancel it.
     pub fn progress(self, progress: &'a dyn Progress) -> Self {
         Self { progress, ..self }
@@ -192,9 +205,11 @@ impl<'a> SceneBuilder<'a> {
     /// Builds the tree, on the threads of the current rayon pool.
     ///
     /// # Errors
-    /// [`Error::Geometry`] with the mesh and its vertex or triangle at fault; [`Error::Cancelled`].
+    /// [`Error::Geometry`] with the mesh and its vertex or triangle at fault; [`Error::Usage`] when the memory budget does not suffice, before
+    /// memory is asked for; [`Error::Cancelled`].
     pub fn build(self) -> Result<Scene, Error> {
         validate(&self.meshes)?;
+        self.check_budget()?;
         let mut first = Vec::with_capacity(self.meshes.len());
         let mut all = Mesh::default();
         for mesh in self.meshes {
@@ -210,6 +225,23 @@ impl<'a> SceneBuilder<'a> {
         }
         let bvh = Bvh::build(&all, &self.config, self.progress)?;
         Ok(Scene { bvh: bvh.collapse(&CollapseConfig::default()), level: self.level, bounds: all.bounds(), first })
+    }
+}
+
+impl SceneBuilder<'_> {
+    fn check_budget(&self) -> Result<(), Error> {
+        let triangles = self.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        let needed = self.config.peak_bytes(triangles);
+        if needed <= self.budget {
+            return Ok(());
+        }
+        let least = BuildConfig::medium().peak_bytes(triangles);
+        let advice =
+            if least <= self.budget { "take BuildConfig::medium()" } else { "raise it or take fewer triangles" };
+        Err(Error::Usage(format!(
+            "to build a tree over {triangles} triangles takes up to {needed} bytes of memory, the budget is {}: {advice}",
+            self.budget
+        )))
     }
 }
 
@@ -306,6 +338,19 @@ mod tests {
         meshes[1].positions[7][2] = f32::NAN;
         assert!(scene.refit(&meshes).expect_err("NaN").to_string().starts_with("mesh 1: vertex 7"));
         assert_eq!(hash(&scene), hash(&new));
+    }
+
+    #[test]
+    fn a_budget_is_kept() {
+        let build = |budget: u64, config| {
+            Scene::builder().mesh(square(0.0)).mesh(square(1.0)).memory_budget(budget).build_config(config).build()
+        };
+        let needed = BuildConfig::insertion(0).peak_bytes(4);
+        build(needed, BuildConfig::insertion(0)).expect("enough");
+        let e = build(needed - 1, BuildConfig::insertion(0)).expect_err("too little").to_string();
+        assert!(e.contains(&format!("up to {needed} bytes")) && e.contains("take BuildConfig::medium()"), "{e}");
+        let e = build(100, BuildConfig::fast()).expect_err("far too little");
+        assert!(matches!(&e, Error::Usage(message) if message.contains("raise it")), "{e}");
     }
 
     #[test]

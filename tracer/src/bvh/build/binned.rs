@@ -44,6 +44,8 @@ pub(super) fn build(mut primitives: Vec<Primitive>, config: &Config, progress: &
     let range = Range { src: &mut primitives, dst: &mut scratch, ids: &mut ids, first: 0, depth: 0, bounds };
     let config = Config { max_leaf: config.max_leaf.clamp(1, Node::MAX_LEAF), ..*config };
     let top = Builder { config, progress }.top(range)?;
+    // Before the nodes are put together, which takes as much.
+    drop((primitives, scratch));
     Ok(Tree { nodes: top.into_nodes(), ids })
 }
 

@@ -33,11 +33,13 @@ pub(super) fn build(primitives: Vec<Primitive>, config: &Config, progress: &dyn 
     let config = Config { max_leaf: config.max_leaf.clamp(1, Node::MAX_LEAF), ..*config };
     let keys = keys(&primitives);
     progress.check()?;
-    let (primitives, codes): (Vec<_>, Vec<_>) =
-        keys.into_par_iter().map(|(code, i)| (primitives[i as usize], code)).unzip();
-    let builder = Builder { primitives: &primitives, codes: &codes, config, progress };
-    let (top, _) = builder.top(Range { first: 0, end: primitives.len(), depth: 0 })?;
-    let ids = primitives.par_iter().map(Primitive::id).collect();
+    let sorted: Vec<_> = keys.par_iter().map(|&(_, i)| primitives[i as usize]).collect();
+    drop(primitives);
+    let builder = Builder { primitives: &sorted, keys: &keys, config, progress };
+    let (top, _) = builder.top(Range { first: 0, end: sorted.len(), depth: 0 })?;
+    let ids = sorted.par_iter().map(Primitive::id).collect();
+    // Before the nodes are put together, which takes as much.
+    drop((sorted, keys));
     Ok(Tree { nodes: top.into_nodes(), ids })
 }
 
@@ -94,7 +96,7 @@ type Summary = (Box4, f32);
 
 struct Builder<'a> {
     primitives: &'a [Primitive],
-    codes: &'a [u64],
+    keys: &'a [(u64, u32)],
     config: Config,
     progress: &'a dyn Progress,
 }
@@ -146,12 +148,12 @@ impl Builder<'_> {
     fn split(&self, range: Range) -> [Range; 2] {
         let Range { first, end, depth } = range;
         let balanced_levels = usize::BITS - (range.len() - 1).leading_zeros();
-        let differing = self.codes[first] ^ self.codes[end - 1];
+        let differing = self.keys[first].0 ^ self.keys[end - 1].0;
         let middle = if differing == 0 || depth + balanced_levels >= MAX_DEPTH {
             first + range.len() / 2
         } else {
             let bit = 1 << differing.ilog2();
-            first + self.codes[first..end].partition_point(|code| code & bit == 0)
+            first + self.keys[first..end].partition_point(|(code, _)| code & bit == 0)
         };
         [Range { first, end: middle, depth: depth + 1 }, Range { first: middle, end, depth: depth + 1 }]
     }

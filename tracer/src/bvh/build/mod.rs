@@ -63,6 +63,29 @@ impl BuildConfig {
     pub fn insertion(seed: u64) -> Self {
         Self::Insertion(insertion::Config { seed: Some(seed), ..Default::default() })
     }
+
+    /// How many bytes there are at once, at most, while a [`WideBvh`](super::WideBvh) of eight children is made of this many
+    /// triangles, the mesh not counted: the lists of the builder, or the binary tree with what collapsing it needs, whichever is more.
+    ///
+    /// How many nodes there will be only building tells: this is for triangles that lie far from each other, which make the most. Of
+    /// surfaces it takes 0.55 to 0.75 times as much ([`BuildConfig::high`]: 0.9). What remains, nodes and groups, is less than half of it:
+    /// [`WideBvh::bytes`](super::WideBvh::bytes).
+    #[must_use]
+    pub fn peak_bytes(&self, triangles: usize) -> u64 {
+        // Bytes for each triangle, with one node for each; two where leaves are small.
+        let nodes = |max_leaf| if max_leaf < 4 { 2 } else { 1 };
+        // Triangles; nodes, with costs of collapsing; wide nodes.
+        let collapse = |nodes: u64| 48 + nodes * (32 + 52) + 100;
+        let per_triangle = match self {
+            Self::Linear(config) => collapse(nodes(config.max_leaf)),
+            Self::Binned(config) => collapse(nodes(config.max_leaf)),
+            // Boxes and links of two nodes for each triangle, and the tree made of them.
+            Self::Reinsertion(config) => collapse(nodes(config.binned.max_leaf)).max(232),
+            // Two nodes for each triangle, and their copy of two children a node.
+            Self::Insertion(_) => collapse(2) + 60,
+        };
+        per_triangle * triangles as u64
+    }
 }
 
 /// No leaf is deeper (the root is at depth 0) in trees that are built top down: where only balanced splits still fit, splits are

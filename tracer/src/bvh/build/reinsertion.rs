@@ -211,7 +211,7 @@ impl Links {
     }
 
     /// The depth-first array, larger children first.
-    fn flatten(&mut self, ids: &[u32], config: &binned::Config) -> Tree {
+    fn flatten(mut self, ids: &[u32], config: &binned::Config) -> Tree {
         let mut order = Vec::with_capacity(self.parents.len());
         let mut stack = vec![ROOT];
         while let Some(node) = stack.pop() {
@@ -250,6 +250,7 @@ impl Links {
                 open.pop();
             }
         }
+        tree.nodes.shrink_to_fit();
         tree
     }
 
