@@ -345,9 +345,9 @@ mod tests {
         let build = |budget: u64, config| {
             Scene::builder().mesh(square(0.0)).mesh(square(1.0)).memory_budget(budget).build_config(config).build()
         };
-        let needed = BuildConfig::high().peak_bytes(4);
-        build(needed, BuildConfig::high()).expect("enough");
-        let e = build(needed - 1, BuildConfig::high()).expect_err("too little").to_string();
+        let needed = BuildConfig::insertion(0).peak_bytes(4);
+        build(needed, BuildConfig::insertion(0)).expect("enough");
+        let e = build(needed - 1, BuildConfig::insertion(0)).expect_err("too little").to_string();
         assert!(e.contains(&format!("up to {needed} bytes")) && e.contains("take BuildConfig::medium()"), "{e}");
         let e = build(100, BuildConfig::fast()).expect_err("far too little");
         assert!(matches!(&e, Error::Usage(message) if message.contains("raise it")), "{e}");

@@ -128,14 +128,15 @@ fn what_the_machine_has() {
     assert!(insertion["sah_cost"].as_f64() > scene["sah_cost"].as_f64(), "{insertion} {scene}");
     let of = |build: &str| folder.json(&format!("info balls:1 --json --build {build}"))["scene"].clone();
     let cost = |build: &str| of(build)["sah_cost"].as_f64().expect("a cost");
-    assert!(cost("high") < cost("medium") && cost("medium") < cost("fast"));
+    assert!(cost("high") < cost("medium"));
     let overlap = |build: &str| folder.json(&format!("info balls:1 --json --epo --build {build}"))["scene"].clone();
     assert!(overlap("high")["epo_cost"].as_f64() < overlap("fast")["epo_cost"].as_f64());
     assert!(scene["epo_cost"].is_null() && folder.run("info balls:1 --epo").contains("EPO cost"));
     let (wide, peak) = (scene["wide_bytes"].as_u64().expect("bytes"), scene["peak_bytes"].as_u64().expect("bytes"));
     assert!(scene["wide_bytes_per_triangle"].as_f64().is_some_and(|b| (b - wide as f64 / 1922.0).abs() < 1e-6));
     assert!(wide > 1922 * 40 && wide < peak && peak < 1922 * 500, "{scene}");
-    assert_eq!((&of("binned")["build"], &of("high")["build"]), (&"medium".into(), &"high".into()));
+    let names = ["binned", "fast", "high"].map(|build| of(build)["build"].as_str().map(String::from));
+    assert_eq!(names, ["medium", "fast", "high"].map(|name| Some(name.into())));
     assert!(folder.run("info rings:1").contains("6,242"));
     assert!(folder.files().is_empty());
 }

@@ -1,6 +1,6 @@
 //! Along a space-filling curve (Lauterbach, Garland, Sengupta, Luebke and Manocha 2009, "Fast BVH construction on GPUs"): centers are
-//! sorted by their Morton codes, and each range of them is split where the highest bit changes that is not the same in all. The
-//! fastest of the builders, and the one with the worst trees.
+//! sorted by their Morton codes, those of large triangles apart, and each range of them is split where the highest bit changes that
+//! is not the same in all. The fastest of the builders, most often with the worst trees.
 
 use super::part::Part;
 use super::primitive::{Box4, Primitive, centers};
@@ -29,6 +29,12 @@ impl Default for Config {
 /// Bits of a code on each axis.
 const BITS: u32 = 21;
 
+/// Triangles of this part of the scene's size and larger (floors, walls) get a subtree of their own next to the root, by the highest
+/// bit of their codes (after Vinkler, Bittner and Havran 2017, "Extended Morton codes for high performance bounding volume hierarchy
+/// construction"). Among small ones each would enlarge all boxes on the way down to it: without this the cost of balls is
+/// 3.6 times as high, that of conference 1.27 times.
+const LARGE: f32 = 0.25;
+
 pub(super) fn build(primitives: Vec<Primitive>, config: &Config, progress: &dyn Progress) -> Result<Tree, Error> {
     let config = Config { max_leaf: config.max_leaf.clamp(1, Node::MAX_LEAF), ..*config };
     let keys = keys(&primitives);
@@ -50,7 +56,10 @@ fn keys(primitives: &[Primitive]) -> Vec<(u64, u32)> {
     let extent = (0..3).map(|axis| all.max[axis] - all.min[axis]).fold(0.0, f32::max);
     let scale = ((1 << BITS) as f32 - 1.0) / extent;
     let code = |p: &Primitive| {
-        let mut code = 0;
+        // Twice as large as the triangle, as centers are.
+        let size = 2.0 * p.0.aabb().extent().into_iter().fold(0.0, f32::max);
+        let is_small = size < LARGE * extent;
+        let mut code = u64::from(is_small) << (3 * BITS);
         for axis in 0..3 {
             // Where centers have no extent, or not a finite one, this is NaN or 0, which become 0.
             code |= spread(((p.center(axis) - all.min[axis]) * scale) as u32) << (2 - axis);
@@ -162,6 +171,16 @@ impl Builder<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn large_triangles_come_first() {
+        use crate::geometry::Aabb;
+        let small = |id: u32| Aabb { min: [id as f32; 3], max: [id as f32 + 1.0; 3] };
+        let mut primitives: Vec<_> = (0..9).map(|id| Primitive::new(&small(id), id)).collect();
+        primitives.push(Primitive::new(&Aabb { min: [4.0; 3], max: [4.5, 7.0, 4.5] }, 9));
+        let places: Vec<u32> = keys(&primitives).into_iter().map(|(_, place)| place).collect();
+        assert_eq!(places, [9, 0, 1, 2, 3, 4, 5, 6, 7, 8]);
+    }
 
     #[test]
     fn spreading_keeps_every_bit() {

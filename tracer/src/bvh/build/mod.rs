@@ -1,4 +1,22 @@
 //! Builders: from a mesh to the depth-first array of nodes with skip pointers.
+//!
+//! How the presets compare, in nodes of eight children and groups of four triangles that a single ray visits, from random points to
+//! random points in the scene's box, and in the cost by the surface area heuristic (SAH) and overlap (EPO) of the binary tree. The hits are
+//! the same.
+//!
+//! | | [fast](BuildConfig::fast) | [medium](BuildConfig::medium) | [high](BuildConfig::high) |
+//! |---|---|---|---|
+//! | conference: nodes, groups; SAH, EPO | 8.54, 3.78; 80.9, 24.3 | 6.38, 3.22; 71.1, 16.9 | 4.79, 2.28; 56.9, 10.2 |
+//! | sponza | 10.21, 3.24; 143.5, 29.1 | 7.18, 2.24; 128.8, 22.8 | 4.79, 2.42; 99.4, 11.0 |
+//! | kitchen | 6.78, 1.70; 77.6, 20.8 | 5.51, 1.38; 68.9, 14.7 | 3.46, 1.15; 49.6, 8.9 |
+//! | balls | 1.82, 0.35; 6.24, 0.31 | 1.68, 0.31; 7.84, 0.17 | 1.62, 0.31; 5.88, 0.21 |
+//! | hairball | 34.8, 7.69; 365, 19.7 | 32.4, 7.09; 317, 15.1 | 30.4, 6.94; 294, 12.9 |
+//! | time to build | 0.35 to 0.55 | 1 | 4 to 10 |
+//!
+//! There are no spatial splits. The box of a piece of a triangle does not hold the triangle's box, so that hits would not be exact
+//! any more; and cutting the triangles with the largest boxes to 1.1, 1.3 or 1.6 times as many pieces before building (Karras and Aila 2013)
+//! made no tree better that reinsertion then improves: with 1.3 times as many SAH costs of 57.2, 103.1 and 57.2 instead of 56.9, 99.4
+//! and 49.6 on conference, sponza and kitchen.
 
 pub mod binned;
 mod bins;
