@@ -93,7 +93,7 @@ impl BuildConfig {
         // Bytes for each triangle, with one node for each; two where leaves are small.
         let nodes = |max_leaf| if max_leaf < 4 { 2 } else { 1 };
         // Triangles; nodes, with costs of collapsing; wide nodes.
-        let collapse = |nodes: u64| 48 + nodes * (32 + 52) + 100;
+        let collapse = |nodes: u64| 48 + nodes * (32 + 20) + 100;
         let per_triangle = match self {
             Self::Linear(config) => collapse(nodes(config.max_leaf)),
             Self::Binned(config) => collapse(nodes(config.max_leaf)),
