@@ -1,6 +1,9 @@
 //! Triangles ready to be asked.
 
+mod choose;
 mod file;
+#[cfg(test)]
+pub(crate) mod random;
 
 use crate::Error;
 use crate::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
@@ -34,12 +37,20 @@ pub struct Scene {
     bounds: Aabb,
     /// Number of the first triangle of each mesh.
     first: Vec<u32>,
+    /// Who sees each mesh: [`SceneBuilder::mask`].
+    masks: Vec<u32>,
 }
 
 impl Scene {
     /// Starts a scene.
     pub fn builder<'a>() -> SceneBuilder<'a> {
-        SceneBuilder { meshes: Vec::new(), level: Level::best(), config: BuildConfig::default(), progress: &Silent }
+        SceneBuilder {
+            meshes: Vec::new(),
+            masks: Vec::new(),
+            level: Level::best(),
+            config: BuildConfig::default(),
+            progress: &Silent,
+        }
     }
 
     /// The first hit of a ray. (What an unusual ray does: see [`Ray`].)
@@ -111,6 +122,7 @@ impl Scene {
 #[must_use]
 pub struct SceneBuilder<'a> {
     meshes: Vec<Mesh>,
+    masks: Vec<u32>,
     level: Level,
     config: BuildConfig,
     progress: &'a dyn Progress,
@@ -120,6 +132,16 @@ impl<'a> SceneBuilder<'a> {
     /// Adds a mesh.
     pub fn mesh(mut self, mesh: Mesh) -> Self {
         self.meshes.push(mesh);
+        self.masks.push(u32::MAX);
+        self
+    }
+
+    /// Who sees the mesh added last: rays with a mask that has a bit in common with this one ([`Scene::closest_batch_masked`]). A mesh
+    /// without a mask has all bits.
+    pub fn mask(mut self, mask: u32) -> Self {
+        if let Some(last) = self.masks.last_mut() {
+            *last = mask;
+        }
         self
     }
 
@@ -165,7 +187,13 @@ impl<'a> SceneBuilder<'a> {
             all.positions.extend(mesh.positions);
         }
         let bvh = Bvh::build(&all, &self.config, self.progress)?;
-        Ok(Scene { bvh: bvh.collapse(&CollapseConfig::default()), level: self.level, bounds: all.bounds(), first })
+        Ok(Scene {
+            bvh: bvh.collapse(&CollapseConfig::default()),
+            level: self.level,
+            bounds: all.bounds(),
+            first,
+            masks: self.masks,
+        })
     }
 }
 
