@@ -2,6 +2,7 @@
 
 mod auto;
 pub(crate) mod chosen;
+pub(crate) mod nearest;
 mod packet;
 pub(crate) mod query;
 mod ready;

@@ -2,6 +2,7 @@
 
 mod choose;
 mod file;
+mod nearest;
 #[cfg(test)]
 pub(crate) mod random;
 

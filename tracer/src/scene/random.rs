@@ -2,7 +2,7 @@
 
 use crate::geometry::moller_trumbore::intersect;
 use crate::geometry::slab::{Near, PerRay};
-use crate::geometry::{Aabb, Hit, Packet, Ray, RayBatch, RayBlock, Triangle};
+use crate::geometry::{Aabb, Hit, Packet, Ray, RayBatch, Triangle};
 use crate::model::Mesh;
 
 /// The same numbers everywhere (SplitMix64).
@@ -67,9 +67,7 @@ pub(crate) fn rays(random: &mut Random, mesh: &Mesh, n: usize) -> RayBatch {
 
 /// All hits of a ray, by primitive.
 pub(crate) fn hits_of(mesh: &Mesh, ray: &Ray) -> Vec<Hit> {
-    let mut block = RayBlock::NONE;
-    block.set(0, ray);
-    let ray = Packet::<f32>::load(&block, 0);
+    let ray = Packet::of(ray);
     let negative = |inv: f32| usize::from(inv < 0.0);
     let inv = ray.inv_dir;
     let near = Near::of_octant(negative(inv.x) | negative(inv.y) << 1 | negative(inv.z) << 2);
