@@ -6,6 +6,8 @@ mod nearest;
 #[cfg(test)]
 pub(crate) mod random;
 
+pub(crate) use choose::one_for_each;
+
 use crate::Error;
 use crate::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
 use crate::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch};
@@ -31,6 +33,24 @@ use simd::Level;
 /// ```
 ///
 /// Many rays are found much faster as a batch, in whatever order: see [`Scene::closest_batch`].
+///
+/// # What composes with what
+///
+/// | query                        | one            | batch, any length and order | filter       | mask for each | filter and mask         |
+/// |------------------------------|----------------|-----------------------------|--------------|---------------|-------------------------|
+/// | [`Scene`]: first hit         | `closest`      | `closest_batch`             | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`Scene`]: any hit           | `occluded`     | `occluded_batch`            | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`Scene`]: nearest point     | `nearest`      | `nearest_batch`             | `.._where`   | `is_visible` in `.._where` | `is_visible` in `.._where` |
+/// | [`World`]: first hit         | `closest`      | `closest_batch`             | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`World`]: any hit           | `occluded`     | `occluded_batch`            | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`World`]: nearest point     | no             | no                          | no           | no            | no                      |
+///
+/// A [`World`] is made of instances of scenes and of sets of [`Primitives`] in any mixture; all of its queries see both. One level: no
+/// world in a world. The nearest point of a scene is not that of its instance, as affine maps change distances: ask the scenes.
+/// `.._masked` is for batches of a [`Scene`]; for one ray it is `is_visible` in `closest_where`.
+///
+/// [`World`]: crate::World
+/// [`Primitives`]: crate::Primitives
 #[derive(Debug, Clone)]
 pub struct Scene {
     bvh: WideBvh<8>,

@@ -2,6 +2,7 @@
 
 pub mod binned;
 mod bins;
+mod boxes;
 pub mod insertion;
 mod primitive;
 mod sah;
