@@ -59,6 +59,13 @@ impl<const N: usize> WideBvh<N> {
         planes.map(|plane| plane.abs()).filter(|plane| plane.is_finite()).fold(0.0, f32::max)
     }
 
+    /// The box around all, as traversal has it; empty when there is nothing in the tree.
+    pub(crate) fn bounds(&self) -> Aabb {
+        let children =
+            self.nodes.first().into_iter().flat_map(|root| (0..N).map(|i| root.planes.map(|plane| plane[i])));
+        children.fold(Aabb::EMPTY, |all, [a, b, c, x, y, z]| all.union(&Aabb { min: [a, b, c], max: [x, y, z] }))
+    }
+
     /// Memory of nodes and triangles, in bytes.
     #[must_use]
     pub fn bytes(&self) -> usize {

@@ -4,6 +4,7 @@ pub(crate) mod aabb;
 pub(crate) mod cull;
 mod hit;
 pub(crate) mod moller_trumbore;
+pub(crate) mod nearest;
 mod ray;
 pub(crate) mod slab;
 mod triangle;
@@ -12,6 +13,7 @@ mod vec3;
 
 pub use aabb::Aabb;
 pub use hit::{Hit, HitBatch, HitBlock};
+pub use nearest::Nearest;
 pub(crate) use ray::Packet;
 pub use ray::{Ray, RayBatch, RayBlock};
 pub use triangle::Triangle;

@@ -1,9 +1,12 @@
 //! Ways of finding hits, all behind [`Method`]: rays in, hits out, the same bits from every one of them.
 
 mod auto;
+pub(crate) mod chosen;
+pub(crate) mod nearest;
 mod packet;
-mod query;
+pub(crate) mod query;
 mod ready;
+pub(crate) mod search;
 mod single;
 mod walk;
 

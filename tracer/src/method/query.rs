@@ -5,7 +5,7 @@ use crate::geometry::{Hit, HitBlock};
 use simd::{Block, Float, Vector};
 
 /// Closest or any.
-pub(super) trait Query {
+pub(crate) trait Query {
     /// Results of a block of rays.
     type Block: Send + Clone;
     /// No ray hits anything.
@@ -39,7 +39,7 @@ pub(super) trait Query {
     fn copy<F: Float>(from: (&Self::Block, usize), to: (&mut Self::Block, usize));
 }
 
-pub(super) struct Closest;
+pub(crate) struct Closest;
 impl Query for Closest {
     type Block = HitBlock;
     const NOTHING: HitBlock = HitBlock::MISS;
@@ -85,7 +85,7 @@ impl Query for Closest {
     }
 }
 
-pub(super) struct Any;
+pub(crate) struct Any;
 impl Query for Any {
     type Block = u16;
     const NOTHING: u16 = 0;

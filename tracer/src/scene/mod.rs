@@ -1,6 +1,12 @@
 //! Triangles ready to be asked.
 
+mod choose;
 mod file;
+mod nearest;
+#[cfg(test)]
+pub(crate) mod random;
+
+pub(crate) use choose::one_for_each;
 
 use crate::Error;
 use crate::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
@@ -27,6 +33,24 @@ use simd::Level;
 /// ```
 ///
 /// Many rays are found much faster as a batch, in whatever order: see [`Scene::closest_batch`].
+///
+/// # What composes with what
+///
+/// | query                        | one            | batch, any length and order | filter       | mask for each | filter and mask         |
+/// |------------------------------|----------------|-----------------------------|--------------|---------------|-------------------------|
+/// | [`Scene`]: first hit         | `closest`      | `closest_batch`             | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`Scene`]: any hit           | `occluded`     | `occluded_batch`            | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`Scene`]: nearest point     | `nearest`      | `nearest_batch`             | `.._where`   | `is_visible` in `.._where` | `is_visible` in `.._where` |
+/// | [`World`]: first hit         | `closest`      | `closest_batch`             | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`World`]: any hit           | `occluded`     | `occluded_batch`            | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`World`]: nearest point     | no             | no                          | no           | no            | no                      |
+///
+/// A [`World`] is made of instances of scenes and of sets of [`Primitives`] in any mixture; all of its queries see both. One level: no
+/// world in a world. The nearest point of a scene is not that of its instance, as affine maps change distances: ask the scenes.
+/// `.._masked` is for batches of a [`Scene`]; for one ray it is `is_visible` in `closest_where`.
+///
+/// [`World`]: crate::World
+/// [`Primitives`]: crate::Primitives
 #[derive(Debug, Clone)]
 pub struct Scene {
     bvh: WideBvh<8>,
@@ -34,6 +58,8 @@ pub struct Scene {
     bounds: Aabb,
     /// Number of the first triangle of each mesh.
     first: Vec<u32>,
+    /// Who sees each mesh: [`SceneBuilder::mask`].
+    masks: Vec<u32>,
 }
 
 impl Scene {
@@ -44,6 +70,7 @@ impl Scene {
             level: Level::best(),
             config: BuildConfig::default(),
             budget: u64::MAX,
+            masks: Vec::new(),
             progress: &Silent,
         }
     }
@@ -162,6 +189,7 @@ impl Scene {
 #[must_use]
 pub struct SceneBuilder<'a> {
     meshes: Vec<Mesh>,
+    masks: Vec<u32>,
     level: Level,
     config: BuildConfig,
     budget: u64,
@@ -172,6 +200,16 @@ impl<'a> SceneBuilder<'a> {
     /// Adds a mesh.
     pub fn mesh(mut self, mesh: Mesh) -> Self {
         self.meshes.push(mesh);
+        self.masks.push(u32::MAX);
+        self
+    }
+
+    /// Who sees the mesh added last: rays with a mask that has a bit in common with this one ([`Scene::closest_batch_masked`]). A mesh
+    /// without a mask has all bits.
+    pub fn mask(mut self, mask: u32) -> Self {
+        if let Some(last) = self.masks.last_mut() {
+            *last = mask;
+        }
         self
     }
 
@@ -224,7 +262,13 @@ impl<'a> SceneBuilder<'a> {
             all.positions.extend(mesh.positions);
         }
         let bvh = Bvh::build(&all, &self.config, self.progress)?;
-        Ok(Scene { bvh: bvh.collapse(&CollapseConfig::default()), level: self.level, bounds: all.bounds(), first })
+        Ok(Scene {
+            bvh: bvh.collapse(&CollapseConfig::default()),
+            level: self.level,
+            bounds: all.bounds(),
+            first,
+            masks: self.masks,
+        })
     }
 }
 

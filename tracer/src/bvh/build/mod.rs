@@ -20,6 +20,7 @@
 
 pub mod binned;
 mod bins;
+mod boxes;
 pub mod insertion;
 pub mod linear;
 mod part;
