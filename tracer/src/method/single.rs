@@ -118,7 +118,7 @@ where
                 if ready.odd >> lane & 1 == 0 {
                     walk.run::<Arity<N>, S, Q, C>(Child::node(0), &mut stack, &mut found, &mut self.count);
                 } else {
-                    walk.run_odd::<Arity<N>, S, Q, C>(Child::node(0), &mut stack, &mut found, &mut self.count);
+                    walk.run_odd::<Q, C>(&mut stack, &mut found, &mut self.count);
                 }
             }
             *results = found;

@@ -8,7 +8,7 @@ use crate::geometry::moller_trumbore;
 use crate::geometry::slab::Near;
 use crate::geometry::{Hit, Packet as Rays, Vec3};
 use crate::stats::Count;
-use simd::{Float, Mask, Simd};
+use simd::{Float, Kernel, Level, Mask, Simd};
 
 /// How many children nodes have.
 #[derive(Debug)]
@@ -38,6 +38,27 @@ pub(super) struct Walk<'a, const N: usize> {
     upper: [usize; 3],
 }
 
+struct Odd<'a, Q: Query, C, const N: usize> {
+    walk: &'a Walk<'a, N>,
+    stack: &'a mut [u64],
+    found: &'a mut Q::Block,
+    count: &'a mut C,
+}
+
+impl<Q: Query, C: Count, const N: usize> Kernel for Odd<'_, Q, C, N>
+where
+    Arity<N>: Wide,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Self { walk, stack, found, count } = self;
+        let boxes = walk.rays.ray(walk.lane).splat::<<Arity<N> as Wide>::Lanes<S>>();
+        walk.visit::<_, _, S, Q, C>(boxes, Child::node(0), stack, found, count);
+    }
+}
+
 /// A child with the distance where the ray enters its box above it: entries compare as distances do, for none is negative.
 #[inline(always)]
 pub(super) fn entry(t_near: f32, child: Child) -> u64 {
@@ -63,17 +84,14 @@ impl<'a, const N: usize> Walk<'a, N> {
         self.visit::<_, _, S, Q, C>(boxes, child, stack, found, count)
     }
 
-    /// [`Walk::run`] for a ray that [`Cull`] is not for.
-    #[inline(always)]
-    pub(super) fn run_odd<W: Wide, S: Simd, Q: Query, C: Count>(
-        &self,
-        child: Child,
-        stack: &mut [u64],
-        found: &mut Q::Block,
-        count: &mut C,
-    ) -> f32 {
-        let boxes = self.rays.ray(self.lane).splat::<W::Lanes<S>>();
-        self.visit::<_, _, S, Q, C>(boxes, child, stack, found, count)
+    /// [`Walk::run`] from the root for a ray that [`Cull`] is not for: rare, so it is not worth code at every level.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn run_odd<Q: Query, C: Count>(&self, stack: &mut [u64], found: &mut Q::Block, count: &mut C)
+    where
+        Arity<N>: Wide,
+    {
+        Level::run_scalar(Odd::<Q, C, N> { walk: self, stack, found, count });
     }
 
     /// [`Walk::run`] of a leaf.

@@ -80,7 +80,7 @@ impl<Q: Query> Tile<Q> {
                 odd &= odd - 1;
                 count.packet();
                 let (found, stack) = (&mut self.found[block], &mut self.single_stack);
-                Walk::new(bvh, rays, lane).run_odd::<Arity<N>, S, Q, C>(Child::node(0), stack, found, count);
+                Walk::new(bvh, rays, lane).run_odd::<Q, C>(stack, found, count);
             }
             if rays.valid != 0 {
                 blocks |= 1 << block;

@@ -79,7 +79,7 @@ impl<'a> Packet<'a> {
         Self { order, ..self }
     }
 
-    /// With this form of the slab test. ([`Order::NearFirst`] has one alone.)
+    /// With this form of the slab test. ([`Order::NearFirst`] has one alone, and shares no origin.)
     #[must_use]
     pub fn with_form(self, form: SlabForm) -> Self {
         Self { form, ..self }
@@ -157,16 +157,17 @@ impl<Q: Query, C: Count> Lanes for Trace<'_, Q, C> {
 
     #[inline(always)]
     fn run<F: Float>(self) -> Counters {
-        match self.origin {
-            Some(origin) => self.trace::<F, _>(Shared(origin)),
-            None => self.trace::<F, _>(PerRay),
+        match (self.order, self.origin) {
+            (Order::Stored, Some(origin)) => self.trace::<F, _, false>(Shared(origin)),
+            (Order::Stored, None) => self.trace::<F, _, false>(PerRay),
+            (Order::NearFirst, _) => self.trace::<F, _, true>(PerRay),
         }
     }
 }
 
 impl<Q: Query, C: Count> Trace<'_, Q, C> {
     #[inline(always)]
-    fn trace<F: Float, O: Origin<F>>(mut self, origin: O) -> Counters {
+    fn trace<F: Float, O: Origin<F>, const NEAR_FIRST: bool>(mut self, origin: O) -> Counters {
         let mut stack = Vec::new();
         for (block, chunk) in lanes::chunks::<F>(self.rays.len()) {
             let ray = Rays::<F>::load(&self.rays[block], chunk);
@@ -182,13 +183,10 @@ impl<Q: Query, C: Count> Trace<'_, Q, C> {
                 let same = rest & !((x ^ splat(0)) | (y ^ splat(1)) | (z ^ splat(2)));
                 let near = Near::of_octant(octant);
                 let only = ray.only(same);
-                match self.order {
-                    Order::Stored => {
-                        traverse(self.bvh, self.form, &only, origin, near, &mut found, &mut self.count);
-                    }
-                    Order::NearFirst => {
-                        ordered::traverse(self.bvh, &only, origin, near, &mut found, &mut stack, &mut self.count);
-                    }
+                if NEAR_FIRST {
+                    ordered::traverse(self.bvh, &only, origin, near, &mut found, &mut stack, &mut self.count);
+                } else {
+                    traverse(self.bvh, self.form, &only, origin, near, &mut found, &mut self.count);
                 }
                 rest &= !same;
             }
