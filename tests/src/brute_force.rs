@@ -35,7 +35,7 @@ fn hit(ray: &Ray, triangle: &Triangle) -> Option<Hit> {
     let sign = 1.0_f32.copysign(det);
     let (u, v) = (sign * dot(from_v0, p), sign * dot(ray.dir, q));
     let det = det.abs();
-    if !(det >= f32::MIN_POSITIVE && u >= 0.0 && v >= 0.0 && u + v <= det) {
+    if !(det.is_normal() && u >= 0.0 && v >= 0.0 && u + v <= det) {
         return None;
     }
     let inv = 1.0 / det;

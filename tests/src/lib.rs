@@ -1,5 +1,6 @@
 //! What the tests and benches of the workspace share.
 
+pub mod agreement;
 pub mod brute_force;
 
 /// The README's Rust, compiled and run.

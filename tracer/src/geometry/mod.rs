@@ -10,6 +10,7 @@ pub(crate) mod slab;
 mod triangle;
 mod triangle_group;
 mod vec3;
+pub(crate) mod watertight;
 
 pub use aabb::Aabb;
 pub use hit::{Hit, HitBatch, HitBlock};

@@ -96,7 +96,8 @@ impl<F: Float> Inside<F> {
         let inv = F::splat(1.0) / self.det.abs();
         // Adding 0 turns -0, which depends on the order of comparisons, into 0.
         let t = (self.distance.mul_sign(self.det) * inv).max(box_near).min(box_far) + F::splat(0.0);
-        let mask = self.mask & box_near.le(box_far) & ray.t_min.le(t) & t.le(ray.t_max);
+        // The reciprocal of an infinite determinant is 0, and infinity times that no number.
+        let mask = self.mask & F::splat(0.0).lt(inv) & box_near.le(box_far) & ray.t_min.le(t) & t.le(ray.t_max);
         Candidate { mask, t, u: self.u * inv, v: self.v * inv }
     }
 }

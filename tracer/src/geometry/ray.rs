@@ -7,6 +7,8 @@ use simd::{Block, Float, Mask};
 ///
 /// What unusual numbers mean, on every level alike:
 /// - a direction component below `f32::MIN_POSITIVE` in magnitude (zero, denormal) is zero of its sign;
+/// - directions shorter than about 1e-30 lose accuracy, for a box sees the smallest normal number where a component is zero; a triangle
+///   is not hit where the determinant (its edges' cross product times the direction) is no normal number, overflown say;
 /// - `t_min` below 0 is 0; an empty interval hits nothing; `t_max` may be infinite;
 /// - a ray hits nothing if its origin or direction has a NaN or infinite component, if all of its direction is zero, or if
 ///   an end of the interval is NaN.
@@ -177,6 +179,7 @@ impl RayBatch {
     pub fn clear(&mut self) {
         self.blocks.clear();
         self.len = 0;
+        self.origin = None;
     }
 
     /// Ray number `i`.

@@ -9,12 +9,15 @@ mod ready;
 pub(crate) mod search;
 mod single;
 mod walk;
+mod watertight;
 
 pub use crate::lanes::Width;
 pub use auto::{Auto, Limits};
 pub use packet::{Order, Packet, SharedOrigin, SlabForm};
 pub use single::Single;
 pub use walk::{Arity, Wide};
+pub(crate) use watertight::Vertices;
+pub use watertight::Watertight;
 
 use crate::Error;
 use crate::geometry::{HitBatch, RayBatch, RayBlock};

@@ -21,8 +21,13 @@ impl Scene {
     /// Writes the scene as it is, tree and triangles, to be loaded without building. The file appears whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Io`] when it cannot be written.
+    /// [`Error::Io`] when it cannot be written; [`Error::Usage`] for a scene that is [watertight](super::SceneBuilder::watertight).
     pub fn save(&self, path: &Path) -> Result<(), Error> {
+        if self.vertices.is_some() {
+            return Err(Error::Usage(
+                "a watertight scene cannot be saved: save its mesh, and build the scene of that".into(),
+            ));
+        }
         let mut body = Vec::with_capacity(64 + self.bvh.bytes());
         let mut word = |x: u32| body.extend(x.to_le_bytes());
         let WideBvh { nodes, groups, .. } = &self.bvh;
@@ -116,7 +121,7 @@ fn parse(bytes: &[u8], level: Level) -> Result<Scene, String> {
     let nodes = (0..nodes).map(|_| node(&mut words)).collect::<Result<Vec<_>, _>>()?;
     let groups = (0..groups).map(|_| group(&mut words)).collect::<Result<Vec<_>, _>>()?;
     let bvh = WideBvh::from_parts(nodes, groups).map_err(damaged)?;
-    Ok(Scene { bvh, level, bounds, first, masks })
+    Ok(Scene { bvh, level, bounds, first, masks, vertices: None })
 }
 
 /// Bytes taken from the front.

@@ -36,6 +36,7 @@ use crate::Error;
 use crate::geometry::Triangle;
 use crate::model::Mesh;
 use crate::progress::Progress;
+use primitive::Primitive;
 use rayon::prelude::*;
 
 /// Which builder makes the tree, and its knobs.
@@ -130,11 +131,26 @@ impl Bvh {
     /// # Errors
     /// [`Error::Geometry`] as [`Mesh::validate`] has it, [`Error::Cancelled`] when `progress` says so.
     pub fn build(mesh: &Mesh, config: &BuildConfig, progress: &dyn Progress) -> Result<Self, Error> {
+        Self::build_of(mesh, primitive::primitives, config, progress)
+    }
+
+    /// As [`Bvh::build`], but slivers are left out no more than other triangles, and boxes hold the vertices as they are given: what the
+    /// watertight test needs.
+    pub(crate) fn build_watertight(mesh: &Mesh, config: &BuildConfig, progress: &dyn Progress) -> Result<Self, Error> {
+        Self::build_of(mesh, primitive::slivers_too, config, progress)
+    }
+
+    fn build_of(
+        mesh: &Mesh,
+        primitives: fn(&Mesh) -> Vec<Primitive>,
+        config: &BuildConfig,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
         mesh.validate()?;
         let total = mesh.triangles.len();
         progress.stage("build", total as u64);
         progress.check()?;
-        let primitives = primitive::primitives(mesh);
+        let primitives = primitives(mesh);
         progress.advance((total - primitives.len()) as u64);
         let Tree { nodes, ids } = match config {
             _ if primitives.is_empty() => Tree { nodes: Vec::new(), ids: Vec::new() },

@@ -75,14 +75,25 @@ pub(super) fn centers(primitives: &[Primitive]) -> Box4 {
 
 /// All triangles that are not degenerate, in the order of the mesh.
 pub(super) fn primitives(mesh: &Mesh) -> Vec<Primitive> {
-    // Marks degenerate ones first and removes them then, since only a parallel iterator of known length writes in place.
-    let mut all: Vec<Primitive> = (0..mesh.triangles.len() as u32)
-        .into_par_iter()
-        .map(|id| {
-            let t = triangle(mesh, id);
-            Primitive::new(&if t.is_degenerate() { Aabb::EMPTY } else { t.bounds() }, id)
-        })
-        .collect();
+    primitives_by(mesh, |id| {
+        let t = triangle(mesh, id);
+        if t.is_degenerate() { Aabb::EMPTY } else { t.bounds() }
+    })
+}
+
+/// All triangles whose vertices differ, slivers among them, in boxes around the vertices as given and as stored.
+pub(super) fn slivers_too(mesh: &Mesh) -> Vec<Primitive> {
+    primitives_by(mesh, |id| {
+        let (vertices @ [a, b, c], stored) = (mesh.triangle(id as usize), triangle(mesh, id).bounds());
+        let differ = a != b && b != c && c != a;
+        if differ && stored.is_finite() { stored.union(&Aabb::of_points(vertices)) } else { Aabb::EMPTY }
+    })
+}
+
+fn primitives_by(mesh: &Mesh, bounds: impl Fn(u32) -> Aabb + Sync) -> Vec<Primitive> {
+    // Marks those without a box first and removes them then, since only a parallel iterator of known length writes in place.
+    let ids = (0..mesh.triangles.len() as u32).into_par_iter();
+    let mut all: Vec<Primitive> = ids.map(|id| Primitive::new(&bounds(id), id)).collect();
     all.retain(|p| p.0.min[0] != f32::INFINITY);
     all
 }

@@ -1,0 +1,119 @@
+//! Every way of finding hits, at every level, against the loop over all triangles: the same bits.
+
+use crate::brute_force;
+use simd::Level;
+use tracer::Scene;
+use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
+use tracer::geometry::{Hit, HitBatch, RayBatch, Triangle};
+use tracer::method::{Auto, BitVec, Context, Limits, Method, Packet, SharedOrigin, Single, SlabForm, Width};
+use tracer::model::Mesh;
+use tracer::progress::Silent;
+
+/// The trees that methods need over a mesh.
+#[derive(Debug)]
+pub struct Trees {
+    name: &'static str,
+    binary: Bvh,
+    four: WideBvh<4>,
+    eight: WideBvh<8>,
+    sixteen: WideBvh<16>,
+}
+
+impl Trees {
+    /// By the binned builder.
+    ///
+    /// # Panics
+    /// If the mesh is not valid, as the other constructor.
+    #[must_use]
+    pub fn binned(mesh: &Mesh) -> Self {
+        Self::new("binned", mesh, &BuildConfig::default())
+    }
+
+    /// By the insertion builder.
+    #[must_use]
+    pub fn insertion(mesh: &Mesh) -> Self {
+        Self::new("insertion", mesh, &BuildConfig::insertion(7))
+    }
+
+    fn new(name: &'static str, mesh: &Mesh, config: &BuildConfig) -> Self {
+        let binary = Bvh::build(mesh, config, &Silent).expect("a valid mesh");
+        let config = CollapseConfig::default();
+        let (four, eight, sixteen) = (binary.collapse(&config), binary.collapse(&config), binary.collapse(&config));
+        Self { name, binary, four, eight, sixteen }
+    }
+}
+
+/// What the definition says, ray by ray.
+#[must_use]
+pub fn by_brute_force(mesh: &Mesh, rays: &RayBatch) -> Vec<Hit> {
+    let triangles: Vec<Triangle> = brute_force::triangles(mesh);
+    rays.iter().map(|ray| brute_force::closest(&ray, &triangles)).collect()
+}
+
+/// Checks that all methods at the levels given find these hits, bit for bit, and that any hit is found where there is one. `closest` of
+/// the hits are numbers: no NaN is among them.
+///
+/// # Panics
+/// If a method finds something else.
+pub fn check(what: &str, trees: &Trees, levels: &[Level], rays: &RayBatch, expected: &[Hit]) {
+    for hit in expected {
+        assert!(!hit.t.is_nan() && hit.u >= 0.0 && hit.v >= 0.0, "{what}: {hit:?}");
+    }
+    let early = Limits { together: -1.0, coherent: -1.0, blocks: 0, rays: 0, scatter: 1e9, ..Limits::default() };
+    for &level in levels {
+        let same = |method: &dyn Method, kind: &str| {
+            let what = || format!("{what}, {} tree, {level}, {} {kind}", trees.name, method.name());
+            check_method(&what, method, rays, expected);
+        };
+        same(&Single::<4>::new(&trees.four, level), "4");
+        same(&Single::<8>::new(&trees.eight, level), "8");
+        same(&Single::<16>::new(&trees.sixteen, level), "16");
+        same(&Auto::new(&trees.eight, level), "");
+        same(&Auto::new(&trees.eight, level).with_limits(early), "that keeps rays together");
+        for width in [Width::One, Width::Four, Width::Eight, Width::Sixteen] {
+            let packet = Packet::new(&trees.binary, level, width);
+            same(&packet.with_shared_origin(SharedOrigin::Always), &format!("{width}"));
+            let loose = packet.with_form(SlabForm::Conservative).with_shared_origin(SharedOrigin::Never);
+            same(&loose, &format!("{width} conservative"));
+        }
+    }
+}
+
+/// Checks that watertight scenes over trees of two builders find the same, at all levels, in batches and ray by ray.
+///
+/// # Panics
+/// If not, or if the mesh is not valid.
+pub fn check_watertight(what: &str, mesh: &Mesh, levels: &[Level], rays: &RayBatch) {
+    let mut expected = Vec::new();
+    for config in [BuildConfig::default(), BuildConfig::insertion(7)] {
+        for &level in levels {
+            let scene = Scene::builder().mesh(mesh.clone()).watertight(true).level(level).build_config(config);
+            let scene = scene.build().expect("a valid mesh");
+            let method = scene.watertight().expect("asked for");
+            if expected.is_empty() {
+                expected = rays.iter().map(|ray| method.closest_of(&ray)).collect();
+            }
+            for hit in expected.iter().filter(|hit| !hit.is_miss()) {
+                assert!(!hit.t.is_nan() && hit.u >= 0.0 && hit.v >= 0.0, "{what}: {hit:?}");
+            }
+            check_method(&|| format!("{what}, watertight, {config:?}, {level}"), &method, rays, &expected);
+            let same = rays.iter().zip(&expected).all(|(ray, hit)| method.any_of(&ray) != hit.is_miss());
+            assert!(same, "{what}, watertight, {level}: any hit of one ray");
+        }
+    }
+}
+
+fn check_method(what: &dyn Fn() -> String, method: &dyn Method, rays: &RayBatch, expected: &[Hit]) {
+    let (mut hits, mut occluded, mut cx) = (HitBatch::new(), BitVec::new(), Context::default());
+    method.closest(rays, &mut hits, &mut cx).expect("not cancelled");
+    method.any(rays, &mut occluded, &mut cx).expect("not cancelled");
+    assert_eq!((hits.len(), occluded.len()), (expected.len(), expected.len()), "{}", what());
+    for (i, (hit, expected)) in hits.iter().zip(expected).enumerate() {
+        assert_eq!(bits(hit), bits(*expected), "{}: ray {i} {:?}: {hit:?}, expected {expected:?}", what(), rays.get(i));
+        assert_eq!(occluded.get(i), !expected.is_miss(), "{}: any, ray {i} {:?}", what(), rays.get(i));
+    }
+}
+
+fn bits(hit: Hit) -> [u32; 4] {
+    [hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.primitive]
+}
