@@ -183,6 +183,26 @@ mod tests {
         assert!(worst < 8.0 * f64::from(f32::EPSILON), "{worst:e}");
     }
 
+    /// Also where a side lies in a face of the box and the point above it, so that rounding has no room.
+    #[test]
+    fn the_box_is_never_farther_than_the_triangle() {
+        let mut random = Random(3);
+        let mut equal = 0;
+        for _ in 0..100_000 {
+            let (mut b, mut c) = (random.point(1.0), random.point(1.0));
+            b[2] = random.between(0.5, 1.0);
+            c[2] = b[2];
+            let t = Triangle::new([random.point(0.5), b, c], 0, 0);
+            let s = random.between(0.0, 1.0);
+            let p = [b[0] + s * (c[0] - b[0]), b[1] + s * (c[1] - b[1]), b[2] + random.between(0.0, 1e-3)];
+            let (distance, bounds) = (foot(p, &t).distance, t.bounds());
+            let of_box = to_box(vec3(p), vec3(bounds.min), vec3(bounds.max));
+            assert!(of_box <= distance, "{p:?} {t:?}: {of_box}, {distance}");
+            equal += u32::from(of_box == distance);
+        }
+        assert!(equal > 1000, "{equal}");
+    }
+
     #[test]
     fn extreme_numbers_give_weights() {
         let mut random = Random(2);
