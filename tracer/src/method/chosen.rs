@@ -53,10 +53,11 @@ impl<Q: Query> Kernel for Trace<'_, Q> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let mut stack = stack_for(self.bvh);
-        let mut numbers = self.numbers;
+        let mut first = self.numbers.start;
         for (block, results) in self.rays.iter().zip(self.results) {
             *results = Q::NOTHING;
-            for (lane, number) in (0..16).zip(&mut numbers) {
+            for lane in 0..(self.numbers.end - first).min(16) {
+                let number = first + lane;
                 let ray = Packet::<f32>::load(block, lane);
                 if !ray.valid {
                     continue;
@@ -68,6 +69,7 @@ impl<Q: Query> Kernel for Trace<'_, Q> {
                     Q::store(results, lane, &goal.best);
                 }
             }
+            first = self.numbers.end.min(first + 16);
         }
     }
 }

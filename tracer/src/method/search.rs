@@ -45,19 +45,20 @@ pub(crate) fn search<S: Simd, G: Goal<S>>(bvh: &WideBvh<8>, goal: &mut G, stack:
         } else if let Some(node) = bvh.nodes.get(child.index()) {
             // Only an empty tree has no root.
             let (distance, bits) = goal.children(node);
-            push(node, distance, bits, stack);
+            push(bvh, node, distance, bits, stack);
         }
     }
 }
 
 /// The children that matter go to the stack, the nearer above the farther.
 #[inline(always)]
-fn push<F: Float>(node: &WideNode<8>, distance: F, mut bits: u32, stack: &mut Vec<u64>) {
+fn push<F: Float>(bvh: &WideBvh<8>, node: &WideNode<8>, distance: F, mut bits: u32, stack: &mut Vec<u64>) {
     let (distance, bottom) = (distance.to_block(), stack.len());
     while bits != 0 {
         let i = bits.trailing_zeros() as usize % 8;
         bits &= bits - 1;
         let this = entry(distance.0[i], node.children[i]);
+        bvh.prefetch(node.children[i]);
         let mut at = stack.len();
         stack.push(this);
         while at > bottom && stack[at - 1] < this {
@@ -81,11 +82,13 @@ impl<F: Float> BoxRay<F> {
     /// For boxes that grow by `growth` on all sides before they are tested.
     #[inline(always)]
     pub(crate) fn new(ray: &Packet<f32>, growth: f32) -> Self {
-        let upper = |inv: f32| 3 * usize::from(inv < 0.0);
-        let inv = ray.inv_dir;
-        let [x, y, z] = [inv.x, inv.y, inv.z].map(|inv| growth.copysign(inv));
-        let growth = Vec3 { x, y, z };
-        let origins = [ray.org + growth, ray.org - growth].map(|o| Vec3::splat([o.x, o.y, o.z]));
+        let (org, inv) = (ray.org, ray.inv_dir);
+        // Not `map`: it is not always inlined.
+        let g = Vec3 { x: growth.copysign(inv.x), y: growth.copysign(inv.y), z: growth.copysign(inv.z) };
+        let origins = [
+            Vec3::splat([org.x + g.x, org.y + g.y, org.z + g.z]),
+            Vec3::splat([org.x - g.x, org.y - g.y, org.z - g.z]),
+        ];
         Self { ray: ray.splat(), origins, upper: [upper(inv.x), upper(inv.y), upper(inv.z)] }
     }
 
@@ -99,6 +102,11 @@ impl<F: Float> BoxRay<F> {
         let (t_near, t_far) = between(near - from_near, far - from_far, &self.ray, self.ray.t_min, F::splat(reach));
         (t_near, t_near.le(t_far).bitmask())
     }
+}
+
+#[inline(always)]
+fn upper(inv: f32) -> usize {
+    3 * usize::from(inv < 0.0)
 }
 
 /// The first hit of a ray, or any, among those that the caller does not refuse.

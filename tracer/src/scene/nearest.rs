@@ -96,7 +96,7 @@ mod tests {
                     _ => random.point(1.5),
                 })
                 .collect();
-            let takes = |i: usize, n: &Nearest| (n.primitive as usize + i) % 3 != 0 && n.u < 0.9;
+            let takes = |i: usize, n: &Nearest| !(n.primitive as usize + i).is_multiple_of(3) && n.u < 0.9;
             for level in Level::available() {
                 let scene = Scene::builder().mesh(mesh.clone()).level(level).build().expect("a valid mesh");
                 for max_distance in [f32::INFINITY, 0.3, 0.0] {

@@ -1,7 +1,7 @@
 //! Rays, one at a time, through the tree of a world, and in it through those of the instances.
 
 use super::primitives::Items;
-use super::transform::is_ordinary;
+use super::transform::{is_ordinary, largest};
 use super::{Content, World, WorldHit};
 use crate::bvh::{WideBvh, WideNode};
 use crate::geometry::{Hit, Packet, Ray, RayBatch, RayBlock, TriangleGroup};
@@ -11,6 +11,9 @@ use simd::{Kernel, Mask, Simd, Vector};
 
 /// A hit that is refused, of the ray with a number, is passed through.
 pub(super) type Accept<'a> = dyn Fn(usize, &WorldHit) -> bool + Sync + 'a;
+
+/// The same within a thread.
+type Filter<'a> = &'a dyn Fn(usize, &WorldHit) -> bool;
 
 /// Results of sixteen rays.
 pub(super) trait Results: Send {
@@ -47,9 +50,7 @@ pub(super) fn batch<R: Results>(
     accept: Option<&Accept>,
 ) {
     let portion = |first, blocks: &[RayBlock], results: &mut [R]| {
-        // A closure of its own: one that a thread may share cannot be taken for one that it may not.
-        let shared = accept.map(|accept| move |ray, hit: &WorldHit| accept(ray, hit));
-        let accept = shared.as_ref().map(|accept| accept as &dyn Fn(usize, &WorldHit) -> bool);
+        let accept = accept.map(|accept| accept as Filter);
         world.level.run(Find { world, rays: blocks, masks, numbers: 16 * first..rays.len(), results, accept });
         Ok(())
     };
@@ -75,7 +76,7 @@ pub(super) fn one<R: Results>(
         masks: mask.as_ref().map(|mask| &mask[..]),
         numbers: 0..1,
         results: &mut results,
-        accept: numbered.as_ref().map(|accept| accept as &dyn Fn(usize, &WorldHit) -> bool),
+        accept: numbered.as_ref().map(|accept| accept as Filter),
     });
     let [result] = results;
     result
@@ -89,7 +90,7 @@ struct Find<'a, R> {
     /// Of the first of these rays, and of the one behind the last of all.
     numbers: std::ops::Range<usize>,
     results: &'a mut [R],
-    accept: Option<&'a dyn Fn(usize, &WorldHit) -> bool>,
+    accept: Option<Filter<'a>>,
 }
 
 impl<R: Results> Kernel for Find<'_, R> {
@@ -98,10 +99,11 @@ impl<R: Results> Kernel for Find<'_, R> {
     #[inline(always)]
     fn run<S: Simd>(self) {
         let mut stack = Vec::with_capacity(self.world.room);
-        let mut numbers = self.numbers;
+        let mut first = self.numbers.start;
         for (block, results) in self.rays.iter().zip(self.results) {
             *results = R::NOTHING;
-            for (lane, number) in (0..16).zip(&mut numbers) {
+            for lane in 0..(self.numbers.end - first).min(16) {
+                let number = first + lane;
                 let packet = Packet::<f32>::load(block, lane);
                 if !packet.valid {
                     continue;
@@ -125,13 +127,9 @@ impl<R: Results> Kernel for Find<'_, R> {
                     results.set(lane, &goal.best);
                 }
             }
+            first = self.numbers.end.min(first + 16);
         }
     }
-}
-
-#[inline(always)]
-fn largest(v: &[f32; 3]) -> f32 {
-    v[0].abs().max(v[1].abs()).max(v[2].abs())
 }
 
 /// The first hit of a ray, or any, among the instances.

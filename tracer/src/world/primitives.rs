@@ -93,14 +93,15 @@ impl fmt::Debug for Items {
 /// As [`slab`](crate::geometry::slab) computes it for boxes on the way: those of [`BoxRay`](crate::method::search::BoxRay).
 #[inline(always)]
 fn interval(b: &Aabb, ray: &Packet<f32>) -> (f32, f32) {
-    let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
     let (org, inv, inv_far) = (ray.org, ray.inv_dir, ray.inv_dir_far);
-    for (axis, (org, inv, inv_far)) in
-        [(org.x, inv.x, inv_far.x), (org.y, inv.y, inv_far.y), (org.z, inv.z, inv_far.z)].into_iter().enumerate()
-    {
-        let (enter, leave) = if inv < 0.0 { (b.max[axis], b.min[axis]) } else { (b.min[axis], b.max[axis]) };
-        near = near.max((enter - org) * inv);
-        far = far.min((leave - org) * inv_far);
-    }
-    (near, far)
+    let x = slab(b, 0, org.x, inv.x, inv_far.x);
+    let y = slab(b, 1, org.y, inv.y, inv_far.y);
+    let z = slab(b, 2, org.z, inv.z, inv_far.z);
+    (x.0.max(y.0).max(z.0), x.1.min(y.1).min(z.1))
+}
+
+#[inline(always)]
+fn slab(b: &Aabb, axis: usize, org: f32, inv: f32, inv_far: f32) -> (f32, f32) {
+    let (enter, leave) = if inv < 0.0 { (b.max[axis], b.min[axis]) } else { (b.min[axis], b.max[axis]) };
+    ((enter - org) * inv, (leave - org) * inv_far)
 }

@@ -46,8 +46,9 @@ impl Primitives for Spheres {
 /// Turned, scaled (on each axis otherwise, perhaps mirrored), sheared and moved.
 fn affine(random: &mut Random, moved: f32) -> Rows {
     let shift = random.point(moved);
-    let stretch = [0, 1, 2].map(|_| random.between(0.3, 2.0) * if random.bits() % 4 == 0 { -1.0 } else { 1.0 });
-    if random.bits() % 3 == 0 {
+    let stretch =
+        [0, 1, 2].map(|_| random.between(0.3, 2.0) * if random.bits().is_multiple_of(4) { -1.0 } else { 1.0 });
+    if random.bits().is_multiple_of(3) {
         // Flat boxes stay flat.
         return [0, 1, 2].map(|i| [0, 1, 2, 3].map(|k| if k == 3 { shift[i] } else { f32::from(i == k) * stretch[i] }));
     }

@@ -68,13 +68,13 @@ impl Transform {
     /// The ray in the object's coordinates; `t` means the same.
     #[inline(always)]
     pub(super) fn ray(&self, ray: &Ray) -> Ray {
-        let org = ray.org.map(f64::from);
-        // As `Ray` says: zero.
-        let dir = ray.dir.map(|d| f64::from(if d.abs() < f32::MIN_POSITIVE { 0.0 } else { d }));
+        let ([x, y, z], [u, v, w]) = (ray.org, ray.dir);
+        let (x, y, z) = (f64::from(x), f64::from(y), f64::from(z));
+        let (u, v, w) = (flush(u), flush(v), flush(w));
         let mut object = *ray;
-        for (i, [x, y, z, w]) in self.to_object.iter().enumerate() {
-            object.org[i] = (x * org[0] + y * org[1] + z * org[2] + w) as f32;
-            object.dir[i] = (x * dir[0] + y * dir[1] + z * dir[2]) as f32;
+        for (i, [a, b, c, shift]) in self.to_object.iter().enumerate() {
+            object.org[i] = (a * x + b * y + c * z + shift) as f32;
+            object.dir[i] = (a * u + b * v + c * w) as f32;
         }
         object
     }
@@ -87,8 +87,8 @@ impl Transform {
         let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
         for (i, [row @ .., shift]) in self.to_world.iter().enumerate() {
             (min[i], max[i]) = (*shift, *shift);
-            for k in 0..3 {
-                let (a, b) = (row[k] * f64::from(object.min[k]), row[k] * f64::from(object.max[k]));
+            for (k, factor) in row.iter().enumerate() {
+                let (a, b) = (factor * f64::from(object.min[k]), factor * f64::from(object.max[k]));
                 min[i] += a.min(b);
                 max[i] += a.max(b);
             }
@@ -112,11 +112,23 @@ impl Transform {
     }
 }
 
+/// Zero for what counts as zero: see [`Ray`].
+#[inline(always)]
+fn flush(d: f32) -> f64 {
+    if d.abs() < f32::MIN_POSITIVE { 0.0 } else { f64::from(d) }
+}
+
 /// Whether all of this holds for a ray; for others no box is asked.
+#[inline(always)]
 pub(super) fn is_ordinary(ray: &Ray) -> bool {
-    let largest = |v: [f32; 3]| v.iter().fold(0.0_f32, |a, x| a.max(x.abs()));
-    let (org, dir) = (f64::from(largest(ray.org)), f64::from(largest(ray.dir)));
+    let (org, dir) = (f64::from(largest(&ray.org)), f64::from(largest(&ray.dir)));
     org <= LARGEST_COORDINATE && (1.0 / LARGEST_SCALE..=LARGEST_SCALE).contains(&dir)
+}
+
+/// The largest size of a coordinate.
+#[inline(always)]
+pub(super) fn largest(v: &[f32; 3]) -> f32 {
+    v[0].abs().max(v[1].abs()).max(v[2].abs())
 }
 
 /// By cofactors; not finite if there is none.
@@ -128,10 +140,8 @@ fn inverse(m: &Rows<f64>) -> Rows<f64> {
     let det = m[0][0] * cofactor(0, 0) + m[0][1] * cofactor(0, 1) + m[0][2] * cofactor(0, 2);
     let mut inverse = [[0.0; 4]; 3];
     for (k, row) in inverse.iter_mut().enumerate() {
-        for i in 0..3 {
-            row[i] = cofactor(i, k) / det;
-        }
-        row[3] = -(row[0] * m[0][3] + row[1] * m[1][3] + row[2] * m[2][3]);
+        let [x, y, z] = [0, 1, 2].map(|i| cofactor(i, k) / det);
+        *row = [x, y, z, -(x * m[0][3] + y * m[1][3] + z * m[2][3])];
     }
     inverse
 }
