@@ -81,6 +81,8 @@ impl<Q: Query> Tile<Q> {
                 count.packet();
                 let (found, stack) = (&mut self.found[block], &mut self.single_stack);
                 Walk::new(bvh, rays, lane).run_odd::<Q, C>(stack, found, count);
+                // Done: it meets no box of the others' test, whatever that computes of it.
+                rays.reach.0[lane] = f32::NEG_INFINITY;
             }
             if rays.valid != 0 {
                 blocks |= 1 << block;
