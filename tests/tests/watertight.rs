@@ -259,6 +259,22 @@ fn a_triangle_without_area_keeps_its_place() {
     }
 }
 
+/// Two halves of a floor that meet in a long straight line: rounding far away turns the line a little, out of both boxes.
+#[test]
+fn long_edges_along_boxes() {
+    let x = [-5.0, 0.1, 5.0].map(|x| [[x, 0.0, -1000.0], [x, 0.0, 1000.0]]);
+    let triangles = vec![[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 5]];
+    let scene = Scene::builder().triangles(x.as_flattened().to_vec(), triangles).watertight(true).build();
+    let scene = scene.expect("a valid mesh");
+    let mut random = Random(21);
+    for _ in 0..100_000 {
+        let org = [random.between(-1.0, 1.0), random.between(0.1, 1.0), random.between(-1.0, 1.0)];
+        let to = [0.1 + random.between(-2e-5, 2e-5), 0.0, org[2] + random.between(1.5, 8.0)];
+        let ray = Ray::new(org, std::array::from_fn(|k| to[k] - org[k]));
+        assert!(scene.occluded(&ray), "{ray:?}");
+    }
+}
+
 /// From far away at the middle of a surface: the farther, the wider the boxes.
 #[test]
 fn origins_may_be_far_away() {
