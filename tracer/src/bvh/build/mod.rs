@@ -102,7 +102,7 @@ impl BuildConfig {
             // Boxes and links of two nodes for each triangle, and the tree made of them.
             Self::Reinsertion(config) => collapse(nodes(config.binned.max_leaf)).max(232),
             // Two nodes for each triangle, and their copy of two children a node.
-            Self::Insertion(_) => collapse(2) + 60,
+            Self::Insertion(_) => collapse(2) + 70,
         };
         per_triangle * triangles as u64
     }
