@@ -68,7 +68,8 @@ impl WorldHit {
 /// ```
 ///
 /// The result of a ray is the first of what [`Scene::closest`] says of each instance for [`World::object_ray`], bit for bit, at every level
-/// and on any number of threads; at equal `t` that of the lower instance, then of the lower primitive.
+/// and on any number of threads; at equal `t` that of the lower instance, then of the lower primitive. ([Watertight](crate::SceneBuilder::watertight)
+/// scenes are asked by the usual triangle test here.)
 #[derive(Debug, Clone)]
 pub struct World {
     instances: Vec<Instance>,
