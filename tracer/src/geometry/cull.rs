@@ -136,3 +136,77 @@ fn at<F: Float>(plane: Vec3<F>, inv_dir: Vec3<F>, add: Vec3<F>) -> Vec3<F> {
 fn cut<F: Float>(near: Vec3<F>, far: Vec3<F>, from: F, to: F) -> (F, F) {
     (near.x.max(near.y).max(near.z.max(from)), far.x.min(far.y).min(far.z.min(to)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Ray, RayBlock};
+
+    /// Numbers from -1 to 1; zero, one of a few sizes, and now and then one that was there before.
+    struct Numbers {
+        state: u32,
+        last: f32,
+    }
+
+    impl Numbers {
+        fn bits(&mut self) -> u32 {
+            self.state = self.state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            self.state >> 8
+        }
+
+        fn next(&mut self, scale: f32) -> f32 {
+            let x = (self.bits() as f32 / 8_388_608.0 - 1.0) * scale;
+            let x = match self.bits() % 8 {
+                0 => 0.0,
+                1 => x * 1e-6,
+                2 => x * 1e-20,
+                3 => self.last,
+                _ => x,
+            };
+            self.last = x;
+            x
+        }
+    }
+
+    #[test]
+    fn what_the_exact_test_takes_is_taken() {
+        let mut numbers = Numbers { state: 1, last: 0.0 };
+        let (mut met, mut odd) = (0, 0);
+        for case in 0..400_000 {
+            let scale = [1.0, 1e3, 1e-8, 1e12][case % 4];
+            let mut three = |scale: f32| [numbers.next(scale), numbers.next(scale), numbers.next(scale)];
+            let (a, b, org, dir) = (three(scale), three(scale), three(2.0 * scale), three(1.0));
+            let mut block = RayBlock::NONE;
+            block.set(0, &Ray::new(org, dir));
+            let ray = Packet::<f32>::load(&block, 0);
+            let largest = a.iter().chain(&b).fold(0.0_f32, |m, x| m.max(x.abs()));
+            let (cull, ordinary) = Cull::new(&ray, largest);
+            if !ray.valid {
+                continue;
+            }
+            if !ordinary {
+                odd += 1;
+                continue;
+            }
+            let pick = |axis: usize, low: bool| if (a[axis] < b[axis]) == low { a[axis] } else { b[axis] };
+            let corner = |low| Vec3::<f32>::splat([pick(0, low), pick(1, low), pick(2, low)]);
+            let (low, high) = (corner(true), corner(false));
+            let signs = ray.signs();
+            let (near, far) = (slab::choose::<f32>(signs, high, low), slab::choose::<f32>(signs, low, high));
+            let exact = Boxes::interval(&ray, near, far, 0.0, f32::INFINITY);
+            if exact.0 > exact.1 {
+                continue;
+            }
+            met += 1;
+            for cheap in
+                [cull.interval(near, far, 0.0, f32::INFINITY), cull.mixed().interval(low, high, 0.0, f32::INFINITY)]
+            {
+                assert!(
+                    cheap.0 <= exact.0 && cheap.1 >= exact.1,
+                    "{cheap:?} does not hold {exact:?}: {a:?} {b:?} {org:?} {dir:?}"
+                );
+            }
+        }
+        assert!(met > 10_000 && odd < 40_000, "{met} boxes were met, {odd} rays were odd");
+    }
+}
