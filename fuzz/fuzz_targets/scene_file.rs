@@ -14,7 +14,7 @@ fn file(bytes: &[u8]) -> Vec<u8> {
     let mix = |sum: u64, &byte: &u8| (sum ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
     let sum = body.iter().fold(0xcbf2_9ce4_8422_2325, mix);
     let mut file = b"TRACER\r\n".to_vec();
-    file.extend(1_u32.to_le_bytes());
+    file.extend(2_u32.to_le_bytes());
     file.extend((body.len() as u64).to_le_bytes());
     file.extend(sum.to_le_bytes());
     file.extend(body);

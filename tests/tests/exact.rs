@@ -5,7 +5,7 @@ use simd::{Isa, Level};
 use tests::{Random, brute_force, real_scene};
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig};
 use tracer::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
-use tracer::method::{Auto, BitVec, Context, Method, Packet, SharedOrigin, Single, SlabForm, Width};
+use tracer::method::{Auto, BitVec, Context, Method, Order, Packet, SharedOrigin, Single, SlabForm, Width};
 use tracer::model::{Mesh, Model, builtin};
 use tracer::progress::Silent;
 use tracer::render::{EyeRays, Frame, Settings, Surfaces};
@@ -45,15 +45,15 @@ fn check_method(method: &dyn Method, rays: &RayBatch, expected: &HitBatch, what:
 
 /// All levels x widths x forms of the box test, and single rays through wide trees, then thread counts, against the single-ray walk; that against brute force on `checked`
 /// rays spread over the batch. Returns how many rays hit.
-fn check(name: &str, mesh: &Mesh, trees: &[(&str, &Bvh)], rays: &RayBatch, checked: usize) -> usize {
-    let expected = closest(&Packet::new(trees[0].1, Level::SCALAR, Width::One), rays);
+fn check(name: &str, mesh: &Mesh, trees: &[(&str, Bvh)], rays: &RayBatch, checked: usize) -> usize {
+    let expected = closest(&Packet::new(&trees[0].1, Level::SCALAR, Width::One), rays);
     let triangles: Vec<Triangle> = brute_force::triangles(mesh);
     let step = (rays.len() / checked).max(1);
     for i in (0..rays.len()).step_by(step) {
         let brute = brute_force::closest(&rays.get(i), &triangles);
         assert_eq!(bits(expected.get(i)), bits(brute), "{name}: ray {i} {:?}, brute force {brute:?}", rays.get(i));
     }
-    for &(tree, bvh) in trees {
+    for (tree, bvh) in trees {
         for level in Level::available() {
             for width in WIDTHS {
                 for (form, shared) in [
@@ -66,6 +66,13 @@ fn check(name: &str, mesh: &Mesh, trees: &[(&str, &Bvh)], rays: &RayBatch, check
                     let method = Packet::new(bvh, level, width).with_form(form).with_shared_origin(shared);
                     check_method(&method, rays, &expected, &what);
                 }
+                let method = Packet::new(bvh, level, width).with_order(Order::NearFirst);
+                check_method(
+                    &method,
+                    rays,
+                    &expected,
+                    &format!("{name}, {tree} tree, {level}, width {width}, near first"),
+                );
             }
         }
         let config = CollapseConfig::default();
@@ -80,7 +87,7 @@ fn check(name: &str, mesh: &Mesh, trees: &[(&str, &Bvh)], rays: &RayBatch, check
     }
     for threads in [2, 3] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        let hits = pool.install(|| closest(&Packet::new(trees[0].1, Level::best(), Width::Auto), rays));
+        let hits = pool.install(|| closest(&Packet::new(&trees[0].1, Level::best(), Width::Auto), rays));
         assert_same(&hits, &expected, rays, &format!("{name}, {threads} threads"));
     }
     let hits = expected.iter().filter(|h| !h.is_miss()).count();
@@ -100,10 +107,15 @@ fn levels_line() {
     println!("levels run: {}; levels missing on this CPU: {}", names(true), names(false));
 }
 
-fn both_trees(mesh: &Mesh) -> (Bvh, Bvh) {
-    let binned = Bvh::build(mesh, &BuildConfig::default(), &Silent).expect("a valid mesh");
-    let insertion = Bvh::build(mesh, &BuildConfig::insertion(7), &Silent).expect("a valid mesh");
-    (binned, insertion)
+/// A tree from every builder.
+fn trees(mesh: &Mesh) -> Vec<(&'static str, Bvh)> {
+    let configs = [
+        ("medium", BuildConfig::medium()),
+        ("fast", BuildConfig::fast()),
+        ("high", BuildConfig::high()),
+        ("insertion", BuildConfig::insertion(7)),
+    ];
+    configs.map(|(name, config)| (name, Bvh::build(mesh, &config, &Silent).expect("a valid mesh"))).into()
 }
 
 /// Rays from everywhere to everywhere; some axis-parallel, some starting on a vertex, some with unusual numbers.
@@ -151,8 +163,7 @@ fn eye_rays(scene: &Model, size: usize) -> EyeRays {
 
 fn check_scene(name: &str, scene: &Model, size: usize, number: usize, checked: usize) {
     levels_line();
-    let (binned, insertion) = both_trees(&scene.mesh);
-    let trees = [("binned", &binned), ("insertion", &insertion)];
+    let trees = trees(&scene.mesh);
     let eye = eye_rays(scene, size);
     assert!(eye.rays().origin().is_some());
     assert!(check(&format!("{name}, eye rays"), &scene.mesh, &trees, eye.rays(), checked) > 0);
@@ -248,8 +259,7 @@ fn awkward_meshes_are_exact() {
                 mesh.triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
             }
         }
-        let (binned, insertion) = both_trees(&mesh);
-        let trees = [("binned", &binned), ("insertion", &insertion)];
+        let trees = trees(&mesh);
         let rays = incoherent(&mesh, 200, round);
         check(&format!("awkward mesh {round}"), &mesh, &trees, &rays, 200);
     }

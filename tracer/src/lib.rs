@@ -49,6 +49,7 @@
 //! - [`bvh`]: the tree and its builders.
 //! - [`method`]: ways of finding hits, behind one interface.
 //! - [`Scene`]: a tree and a method, ready to be asked: all that most programs need.
+//! - [`World`]: scenes at many places, and surfaces that are no triangles.
 //! - [`render`]: pictures, in three passes.
 //!
 //! Features `glam` and `mint` add conversions to and from the types of those crates: module `interop`.
@@ -69,6 +70,8 @@ pub mod progress;
 pub mod render;
 mod scene;
 pub mod stats;
+mod world;
 
 pub use error::Error;
 pub use scene::{Scene, SceneBuilder};
+pub use world::{Primitives, World, WorldBuilder, WorldHit};

@@ -91,8 +91,7 @@ fn build(spec: &str, mesh: &Mesh) -> Result<Tracer, String> {
     let kind = words.next().unwrap_or_default();
     let (kind, single) = kind.strip_prefix("single").map_or((kind, false), |kind| (kind, true));
     let mut limits = Limits::default();
-    let (mut level, mut collapse, mut config) =
-        (Level::best(), CollapseConfig::default(), tracer::bvh::build::binned::Config::default());
+    let (mut level, mut collapse, mut config) = (Level::best(), CollapseConfig::default(), BuildConfig::default());
     for word in words {
         let (key, value) = word.split_once('=').ok_or(format!("'{word}' is not key=value"))?;
         let number = || value.parse().map_err(|e| format!("{word}: {e}"));
@@ -107,13 +106,20 @@ fn build(spec: &str, mesh: &Mesh) -> Result<Tracer, String> {
             "mixed_closest" => limits.mixed_closest = number()? as u32,
             "mixed_any" => limits.mixed_any = number()? as u32,
             "scatter" => limits.scatter = number()?,
-            "traversal_cost" => config.traversal_cost = number()?,
+            "build" => {
+                config = match value {
+                    "fast" => BuildConfig::fast(),
+                    "medium" => BuildConfig::medium(),
+                    "high" => BuildConfig::high(),
+                    _ => return Err(format!("unknown builder '{value}'")),
+                }
+            }
             _ => return Err(format!("unknown key '{key}'")),
         }
     }
     // The harness has threads of its own: a pool of one runs on the caller's. It can be built only once.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
-    let bvh = Bvh::build(mesh, &BuildConfig::Binned(config), &Silent).map_err(|e| e.to_string())?;
+    let bvh = Bvh::build(mesh, &config, &Silent).map_err(|e| e.to_string())?;
     let tree = match kind {
         "binary" => Tree::Binary(bvh),
         "wide4" => Tree::Wide4(bvh.collapse(&collapse)),

@@ -3,7 +3,7 @@
 
 use super::wide::GROUP;
 use super::{Bvh, Child, Node, WideBvh, WideNode};
-use crate::geometry::{Aabb, Triangle, TriangleGroup};
+use crate::geometry::{Aabb, TriangleGroup};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -29,14 +29,14 @@ enum Fate {
     Node,
 }
 
-/// Costs of a subtree.
+/// What was found best for a subtree.
 #[derive(Clone, Copy)]
 struct Best<const N: usize> {
-    /// `cost[i]`: as at most `i + 1` children of a wide node above it.
-    cost: [f32; N],
-    /// `left[i]`: how many of these the first child gets; 0 where fewer cost no more.
+    /// `left[i]`: as at most `i + 1` children of a wide node above it, how many of these the first child gets; 0 where fewer cost no more.
     left: [u8; N],
     fate: Fate,
+    /// First triangle and number of triangles.
+    triangles: (u32, u32),
 }
 
 impl Bvh {
@@ -49,13 +49,13 @@ impl Bvh {
             return wide;
         }
         let nodes = &*self.in_twos();
-        let ranges = ranges(nodes);
-        let best = costs::<N>(nodes, config, &ranges);
+        let best = best::<N>(nodes, config);
         wide.nodes.push(WideNode::EMPTY);
-        let emit = Emit { nodes, triangles: &self.triangles, best: &best, ranges: &ranges };
+        let emit = Emit { nodes, best: &best };
         // Even when the whole tree is one leaf there is a node above it.
         let mut todo = vec![(0, 0, 1)];
         let mut roots = Vec::with_capacity(N);
+        let mut leaves = Leaves::default();
         while let Some((at, binary, depth)) = todo.pop() {
             wide.depth = wide.depth.max(depth);
             roots.clear();
@@ -66,7 +66,7 @@ impl Bvh {
             }
             for (i, &root) in roots.iter().enumerate() {
                 let child = if best[root].fate == Fate::Leaf {
-                    emit.leaf(root, &mut wide.groups)
+                    leaves.add(best[root].triangles)
                 } else {
                     wide.nodes.push(WideNode::EMPTY);
                     todo.push((wide.nodes.len() - 1, root, depth + 1));
@@ -74,6 +74,14 @@ impl Bvh {
                 };
                 wide.nodes[at].set(i, &nodes[root].bounds(), child);
             }
+        }
+        // Before there are groups, which take as much.
+        drop(best);
+        wide.nodes.shrink_to_fit();
+        wide.groups.reserve_exact(leaves.groups);
+        for (first, number) in leaves.ranges {
+            let triangles = &self.triangles[first as usize..][..number as usize];
+            wide.groups.extend(triangles.chunks(GROUP).map(TriangleGroup::new));
         }
         wide
     }
@@ -120,28 +128,23 @@ impl Bvh {
     }
 }
 
-/// First triangle and number of triangles of each subtree.
-fn ranges(nodes: &[Node]) -> Vec<(u32, u32)> {
-    let mut ranges = vec![(0, 0); nodes.len()];
-    for (i, node) in nodes.iter().enumerate().rev() {
-        ranges[i] = node.triangles();
-        if ranges[i].1 == 0 {
-            let [a, b] = children(nodes, i);
-            ranges[i] = (ranges[a].0, ranges[a].1 + ranges[b].1);
-        }
-    }
-    ranges
-}
-
-fn costs<const N: usize>(nodes: &[Node], config: &CollapseConfig, ranges: &[(u32, u32)]) -> Vec<Best<N>> {
-    let mut best = vec![Best { cost: [0.0; N], left: [0; N], fate: Fate::Leaf }; nodes.len()];
+fn best<const N: usize>(nodes: &[Node], config: &CollapseConfig) -> Vec<Best<N>> {
+    let mut best = vec![Best { left: [0; N], fate: Fate::Leaf, triangles: (0, 0) }; nodes.len()];
     let max_leaf = config.max_leaf.min(GROUP * Child::MAX_GROUPS);
+    // Costs of the subtrees that have no parent yet, as at most 1, 2, ... children: from the last node to the first the children of a
+    // node lie on top, the first above the second.
+    let mut waiting: Vec<[f32; N]> = Vec::new();
     for (i, node) in nodes.iter().enumerate().rev() {
-        let (area, number) = (node.bounds().half_area(), ranges[i].1 as usize);
-        let groups = number.div_ceil(GROUP) as f32;
-        let mut this = Best { cost: [area * groups; N], left: [0; N], fate: Fate::Leaf };
-        if node.triangles().1 == 0 {
-            let [a, b] = children(nodes, i).map(|child| &best[child].cost);
+        let area = node.bounds().half_area();
+        let groups = |number: u32| (number as usize).div_ceil(GROUP) as f32;
+        let mut this = Best { left: [0; N], fate: Fate::Leaf, triangles: node.triangles() };
+        let mut costs = [area * groups(this.triangles.1); N];
+        let below = if this.triangles.1 == 0 { waiting.pop().zip(waiting.pop()) } else { None };
+        if let Some((a, b)) = below {
+            let [first, second] = children(nodes, i).map(|child| best[child].triangles);
+            let number = first.1 + second.1;
+            this.triangles = (first.0, number);
+            costs[0] = area * groups(number);
             // As `k + 1` children: from those of both sides.
             for k in 1..N {
                 let (mut cost, mut left) = (f32::INFINITY, 1);
@@ -151,19 +154,20 @@ fn costs<const N: usize>(nodes: &[Node], config: &CollapseConfig, ranges: &[(u32
                         (cost, left) = (sum, l + 1);
                     }
                 }
-                (this.cost[k], this.left[k]) = (cost, left as u8);
+                (costs[k], this.left[k]) = (cost, left as u8);
             }
-            let as_node = this.cost[N - 1] + area * config.node_cost;
-            if number > max_leaf || as_node < this.cost[0] {
-                this.cost[0] = as_node;
+            let as_node = costs[N - 1] + area * config.node_cost;
+            if number as usize > max_leaf || as_node < costs[0] {
+                costs[0] = as_node;
                 this.fate = Fate::Node;
             }
             for k in 1..N {
-                if this.cost[k - 1] <= this.cost[k] {
-                    (this.cost[k], this.left[k]) = (this.cost[k - 1], 0);
+                if costs[k - 1] <= costs[k] {
+                    (costs[k], this.left[k]) = (costs[k - 1], 0);
                 }
             }
         }
+        waiting.push(costs);
         best[i] = this;
     }
     best
@@ -176,9 +180,7 @@ fn children(nodes: &[Node], i: usize) -> [usize; 2] {
 
 struct Emit<'a, const N: usize> {
     nodes: &'a [Node],
-    triangles: &'a [Triangle],
     best: &'a [Best<N>],
-    ranges: &'a [(u32, u32)],
 }
 
 impl<const N: usize> Emit<'_, N> {
@@ -194,13 +196,23 @@ impl<const N: usize> Emit<'_, N> {
             if room == 1 || whole { roots.push(child) } else { self.open(child, room, roots) }
         }
     }
+}
 
-    fn leaf(&self, i: usize, groups: &mut Vec<TriangleGroup<GROUP>>) -> Child {
-        let (first, number) = self.ranges[i];
-        let triangles = &self.triangles[first as usize..][..number as usize];
-        let at = groups.len();
-        groups.extend(triangles.chunks(GROUP).map(TriangleGroup::new));
-        Child::leaf(at, groups.len() - at)
+/// Leaves whose triangles are not yet in groups.
+#[derive(Default)]
+struct Leaves {
+    /// First triangle and number of triangles of each.
+    ranges: Vec<(u32, u32)>,
+    /// Number of groups.
+    groups: usize,
+}
+
+impl Leaves {
+    fn add(&mut self, range: (u32, u32)) -> Child {
+        let number = (range.1 as usize).div_ceil(GROUP);
+        self.ranges.push(range);
+        self.groups += number;
+        Child::leaf(self.groups - number, number)
     }
 }
 
@@ -217,41 +229,10 @@ mod tests {
         Bvh::build(&scene.mesh, config, &Silent).expect("a valid mesh")
     }
 
-    /// Every triangle is in one leaf, every box holds what is below it, and no way down is longer than it says.
     fn check<const N: usize>(bvh: &Bvh, config: &CollapseConfig) {
         let wide = bvh.collapse::<N>(config);
-        let (mut ids, mut todo, mut nodes) = (Vec::new(), vec![(0, 1)], 0);
-        while let Some((i, depth)) = todo.pop() {
-            assert!(depth <= wide.depth);
-            nodes += 1;
-            let node = &wide.nodes[i];
-            let bounds = |n: &WideNode<N>, k: usize| Aabb {
-                min: [0, 1, 2].map(|axis| n.planes[axis][k]),
-                max: [3, 4, 5].map(|axis| n.planes[axis][k]),
-            };
-            for (k, &child) in node.children.iter().enumerate().filter(|(_, child)| **child != Child::NONE) {
-                let mut below = Aabb::EMPTY;
-                if child.is_leaf() {
-                    let (first, end) = child.groups();
-                    for group in &wide.groups[first..end] {
-                        for lane in (0..GROUP).filter(|&lane| group.id[lane] != Hit::NO_PRIMITIVE) {
-                            ids.push(group.id[lane]);
-                            let of = |v: &[[f32; GROUP]; 3]| [v[0][lane], v[1][lane], v[2][lane]];
-                            let (v0, e1, e2) = (of(&group.v0), of(&group.e1), of(&group.e2));
-                            let at = |e: [f32; 3]| [v0[0] + e[0], v0[1] + e[1], v0[2] + e[2]];
-                            below = below.union(&Aabb::of_points([v0, at(e1), at(e2)]));
-                        }
-                    }
-                } else {
-                    let inner = &wide.nodes[child.index()];
-                    let used = (0..N).filter(|&k| inner.children[k] != Child::NONE);
-                    below = used.fold(below, |b, k| b.union(&bounds(inner, k)));
-                    todo.push((child.index(), depth + 1));
-                }
-                assert_eq!(below, bounds(node, k), "the box of child {k} of node {i}");
-            }
-        }
-        assert_eq!(nodes, wide.nodes.len(), "every node is reached once");
+        wide.validate().unwrap_or_else(|e| panic!("{config:?}: {e}"));
+        let mut ids: Vec<u32> = wide.groups.iter().flat_map(|g| g.id).filter(|&id| id != Hit::NO_PRIMITIVE).collect();
         ids.sort_unstable();
         let mut expected: Vec<u32> = bvh.triangles.iter().map(|t| t.id).collect();
         expected.sort_unstable();
@@ -260,8 +241,10 @@ mod tests {
 
     #[test]
     fn wide_trees_hold_what_binary_trees_hold() {
-        let builders = [BuildConfig::default(), BuildConfig::insertion(7)];
-        for (spec, builder) in [("balls:1", 0), ("rings:1", 1), ("tree:3", 0), ("tree:3", 1)] {
+        let builders = [BuildConfig::default(), BuildConfig::insertion(7), BuildConfig::fast(), BuildConfig::high()];
+        for (spec, builder) in
+            [("balls:1", 0), ("rings:1", 1), ("tree:3", 0), ("tree:3", 1), ("tree:3", 2), ("tree:3", 3)]
+        {
             let bvh = tree(spec, &builders[builder]);
             for node_cost in [0.0, 0.3, 1.0, 100.0] {
                 for max_leaf in [0, 4, 1000] {

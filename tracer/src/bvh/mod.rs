@@ -2,8 +2,11 @@
 
 pub mod build;
 mod collapse;
+mod epo;
 mod node;
+mod refit;
 mod stats;
+mod validate;
 mod wide;
 
 pub use build::BuildConfig;

@@ -64,6 +64,12 @@ impl Node {
         self
     }
 
+    /// The same node with another box.
+    #[must_use]
+    pub fn with_bounds(self, bounds: &Aabb) -> Self {
+        Self::new(bounds, self.skip(), self.0[7].to_bits())
+    }
+
     /// First triangle and number of triangles; the number is 0 for an inner node.
     #[inline(always)]
     #[must_use]

@@ -1,6 +1,7 @@
 //! Wide trees: nodes of `N` children whose boxes lie side by side, for a single ray against all of them at once (Dammertz, Hanika
 //! and Keller 2008; Ernst and Greiner 2008; Wald, Benthin and Boulos 2008).
 
+use super::validate::structure;
 use crate::geometry::{Aabb, Hit, TriangleGroup};
 
 /// A tree of `N` children a node (4, 8 or 16), over groups of [`WideBvh::GROUP`] triangles. Made from a [`Bvh`](super::Bvh).
@@ -28,8 +29,17 @@ impl<const N: usize> WideBvh<N> {
         if child.is_leaf() {
             let first = child.groups().0;
             simd::prefetch(&self.groups, first);
+            if let Some(group) = self.groups.get(first) {
+                simd::prefetch(&group.e1, 1);
+                simd::prefetch(&group.e2, 2);
+            }
         } else {
             simd::prefetch(&self.nodes, child.index());
+            if let Some(node) = self.nodes.get(child.index()) {
+                simd::prefetch(&node.planes, 2);
+                simd::prefetch(&node.planes, 4);
+                simd::prefetch(&node.children, 0);
+            }
         }
     }
 
@@ -38,45 +48,22 @@ impl<const N: usize> WideBvh<N> {
     /// # Errors
     /// The first fault, in words.
     pub(crate) fn from_parts(nodes: Vec<WideNode<N>>, groups: Vec<TriangleGroup<GROUP>>) -> Result<Self, String> {
-        if nodes.len() >= Child::LEAF as usize {
-            return Err(format!("{} nodes are too many", nodes.len()));
-        }
-        // Depth of each node, once its parent was seen: children come after their parents, so that there is no circle.
-        let mut depths = vec![0; nodes.len()];
-        if let Some(root) = depths.first_mut() {
-            *root = 1;
-        }
-        for (i, node) in nodes.iter().enumerate() {
-            if depths[i] == 0 {
-                return Err(format!("node {i} has no parent before it"));
-            }
-            let below = depths[i] + 1;
-            for (slot, &child) in node.children.iter().enumerate() {
-                let plane = |k: usize| node.planes[k][slot];
-                let empty = (0..3).all(|k| plane(k) == f32::INFINITY && plane(k + 3) == f32::NEG_INFINITY);
-                let boxed =
-                    (0..3).all(|k| plane(k) <= plane(k + 3) && plane(k).is_finite() && plane(k + 3).is_finite());
-                if child == Child::NONE {
-                    if !empty {
-                        return Err(format!("node {i} has a box without a child"));
-                    }
-                } else if !boxed {
-                    return Err(format!("node {i} has a child without a box"));
-                } else if child.is_leaf() {
-                    if child.groups().1 > groups.len() {
-                        return Err(format!("a leaf of node {i} has triangles beyond the end"));
-                    }
-                } else {
-                    match depths.get_mut(child.index()) {
-                        Some(depth) if *depth == 0 => *depth = below,
-                        _ => return Err(format!("node {i} has a child that is none")),
-                    }
-                }
-            }
-        }
+        let depth = structure(&nodes, groups.len())?;
         let triangles = groups.iter().flat_map(|group| group.id).filter(|&id| id != Hit::NO_PRIMITIVE).count();
-        let depth = depths.iter().copied().max().unwrap_or(0);
         Ok(Self { nodes, groups, triangles, depth })
+    }
+
+    /// The largest distance of a plane from zero.
+    pub(crate) fn largest_coordinate(&self) -> f32 {
+        let planes = self.nodes.first().into_iter().flat_map(|root| root.planes.iter().flatten());
+        planes.map(|plane| plane.abs()).filter(|plane| plane.is_finite()).fold(0.0, f32::max)
+    }
+
+    /// The box around all, as traversal has it; empty when there is nothing in the tree.
+    pub(crate) fn bounds(&self) -> Aabb {
+        let children =
+            self.nodes.first().into_iter().flat_map(|root| (0..N).map(|i| root.planes.map(|plane| plane[i])));
+        children.fold(Aabb::EMPTY, |all, [a, b, c, x, y, z]| all.union(&Aabb { min: [a, b, c], max: [x, y, z] }))
     }
 
     /// Memory of nodes and triangles, in bytes.
@@ -110,6 +97,15 @@ impl<const N: usize> WideNode<N> {
         children: [Child::NONE; N],
     };
 
+    /// The box of a child.
+    ///
+    /// # Panics
+    /// If `i >= N`.
+    #[must_use]
+    pub fn bounds(&self, i: usize) -> Aabb {
+        Aabb { min: [0, 1, 2].map(|axis| self.planes[axis][i]), max: [3, 4, 5].map(|axis| self.planes[axis][i]) }
+    }
+
     /// With another child.
     pub(super) fn set(&mut self, i: usize, bounds: &Aabb, child: Child) {
         for axis in 0..3 {
@@ -127,7 +123,7 @@ pub struct Child(u32);
 impl Child {
     /// No child.
     pub const NONE: Self = Self(u32::MAX);
-    const LEAF: u32 = 1 << 31;
+    pub(super) const LEAF: u32 = 1 << 31;
     /// Most groups in a leaf.
     pub const MAX_GROUPS: usize = 8;
 

@@ -52,6 +52,12 @@ impl HitBlock {
         v: Block([Hit::MISS.v; 16]),
         primitive: Block([Hit::MISS.primitive; 16]),
     };
+
+    /// The hit of one ray.
+    #[inline(always)]
+    pub(crate) fn get(&self, lane: usize) -> Hit {
+        Hit { t: self.t.0[lane], u: self.u.0[lane], v: self.v.0[lane], primitive: self.primitive.0[lane] }
+    }
 }
 
 /// The hits of a [`RayBatch`](super::RayBatch), in the order of its rays.
@@ -101,8 +107,7 @@ impl HitBatch {
     #[inline]
     pub fn get(&self, i: usize) -> Hit {
         assert!(i < self.len, "hit {i} of {}", self.len);
-        let (block, lane) = (&self.blocks[i / 16], i % 16);
-        Hit { t: block.t.0[lane], u: block.u.0[lane], v: block.v.0[lane], primitive: block.primitive.0[lane] }
+        self.blocks[i / 16].get(i % 16)
     }
 
     /// A hash of all bits of all hits.

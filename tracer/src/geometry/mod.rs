@@ -1,8 +1,10 @@
 //! Boxes, triangles and rays, and how they meet.
 
 pub(crate) mod aabb;
+pub(crate) mod cull;
 mod hit;
 pub(crate) mod moller_trumbore;
+pub(crate) mod nearest;
 mod ray;
 pub(crate) mod slab;
 mod triangle;
@@ -12,6 +14,7 @@ pub(crate) mod watertight;
 
 pub use aabb::Aabb;
 pub use hit::{Hit, HitBatch, HitBlock};
+pub use nearest::Nearest;
 pub(crate) use ray::Packet;
 pub use ray::{Ray, RayBatch, RayBlock};
 pub use triangle::Triangle;

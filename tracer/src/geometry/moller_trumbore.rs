@@ -1,6 +1,6 @@
 //! The triangle test of Möller & Trumbore 1997, and the exact hit made of it.
 
-use super::slab::{Near, Origin, PerRay, between, interval, mixed};
+use super::slab::{Near, Origin, PerRay, between, choose, interval, mixed};
 use super::{Packet, Triangle, TriangleGroup, Vec3};
 use simd::{Float, Mask};
 
@@ -51,7 +51,6 @@ pub(crate) fn intersect_mixed<F: Float>(triangle: &Triangle, ray: &Packet<F>) ->
 pub(crate) fn intersect_group<F: Float, const W: usize>(
     triangles: &TriangleGroup<W>,
     ray: &Packet<F>,
-    near: Near,
 ) -> Option<Candidate<F>> {
     let [v0, e1, e2] = triangles.corner_and_edges::<F>();
     let from_v0 = ray.org - v0;
@@ -60,9 +59,9 @@ pub(crate) fn intersect_group<F: Float, const W: usize>(
     // As in `planes`.
     let (b, c) = (v0 + e1, v0 + e2);
     let (low, high) = (b.min(c).min(v0), c.max(b).max(v0));
-    let choose = |axis, low, high| if near.is_upper(axis) { (high, low) } else { (low, high) };
-    let (x, y, z) = (choose(0, low.x, high.x), choose(1, low.y, high.y), choose(2, low.z, high.z));
-    let (near, far) = (Vec3 { x: x.0, y: y.0, z: z.0 }, Vec3 { x: x.1, y: y.1, z: z.1 });
+    // Not by branches on the octant: the next ray points elsewhere.
+    let signs = ray.signs();
+    let (near, far) = (choose(signs, high, low), choose(signs, low, high));
     let infinity = F::splat(f32::INFINITY);
     Some(inside.candidate(ray, between(near - ray.org, far - ray.org, ray, -infinity, infinity)))
 }

@@ -69,6 +69,17 @@ impl RayBlock {
         self.t_min.0[lane] = ray.t_min;
         self.t_max.0[lane] = ray.t_max;
     }
+
+    /// The ray of a lane.
+    #[inline(always)]
+    pub(crate) fn get(&self, lane: usize) -> Ray {
+        Ray {
+            org: [self.org[0].0[lane], self.org[1].0[lane], self.org[2].0[lane]],
+            t_min: self.t_min.0[lane],
+            dir: [self.dir[0].0[lane], self.dir[1].0[lane], self.dir[2].0[lane]],
+            t_max: self.t_max.0[lane],
+        }
+    }
 }
 
 /// Any number of rays in blocks of sixteen, structure of arrays.
@@ -141,6 +152,7 @@ impl RayBatch {
             "arrays of one length: {len} starts, {} ends",
             t_max.len()
         );
+        self.blocks.reserve(len.div_ceil(16));
         let mut i = 0;
         // Ray by ray up to the end of the last block, then block by block.
         while i < len {
@@ -150,19 +162,14 @@ impl RayBatch {
                 i += 1;
                 continue;
             }
-            let mut block = RayBlock::NONE;
-            for axis in 0..3 {
-                block.org[axis].0.copy_from_slice(&org[axis][i..i + 16]);
-                block.dir[axis].0.copy_from_slice(&dir[axis][i..i + 16]);
-            }
-            block.t_min.0.copy_from_slice(&t_min[i..i + 16]);
-            block.t_max.0.copy_from_slice(&t_max[i..i + 16]);
-            let first = [block.org[0].0[0], block.org[1].0[0], block.org[2].0[0]];
-            let same =
-                |axis: usize| block.org[axis].0.iter().fold(0, |d, x| d | (x.to_bits() ^ first[axis].to_bits())) == 0;
+            let sixteen = |v: &[f32]| Block(v[i..].first_chunk().copied().unwrap_or([0.0; 16]));
+            let columns = |v: [&[f32]; 3]| [sixteen(v[0]), sixteen(v[1]), sixteen(v[2])];
+            let org = columns(org);
+            let first = [org[0].0[0], org[1].0[0], org[2].0[0]];
+            let same = |axis: usize| org[axis].0.iter().fold(0, |d, x| d | (x.to_bits() ^ first[axis].to_bits())) == 0;
             let origin = if self.len == 0 { Some(first) } else { self.origin };
             self.origin = origin.filter(|&o| same_bits(o, first) && same(0) && same(1) && same(2));
-            self.blocks.push(block);
+            self.blocks.push(RayBlock { org, dir: columns(dir), t_min: sixteen(t_min), t_max: sixteen(t_max) });
             self.len += 16;
             i += 16;
         }
@@ -182,13 +189,7 @@ impl RayBatch {
     #[must_use]
     pub fn get(&self, i: usize) -> Ray {
         assert!(i < self.len, "ray {i} of {}", self.len);
-        let (block, lane) = (&self.blocks[i / 16], i % 16);
-        Ray {
-            org: std::array::from_fn(|axis| block.org[axis].0[lane]),
-            t_min: block.t_min.0[lane],
-            dir: std::array::from_fn(|axis| block.dir[axis].0[lane]),
-            t_max: block.t_max.0[lane],
-        }
+        self.blocks[i / 16].get(i % 16)
     }
 
     /// The rays in order.
@@ -256,8 +257,13 @@ impl<F: Float> Packet<F> {
     /// Lanes `chunk * LANES ..` of a block.
     #[inline(always)]
     pub(crate) fn load(block: &RayBlock, chunk: usize) -> Self {
-        let (org, dir) = (Vec3::load(&block.org, chunk), Vec3::<F>::load(&block.dir, chunk));
         let (t_min, t_max) = (F::load_block(&block.t_min, chunk), F::load_block(&block.t_max, chunk));
+        Self::new(Vec3::load(&block.org, chunk), Vec3::load(&block.dir, chunk), t_min, t_max)
+    }
+
+    /// Cleans rays and makes them ready.
+    #[inline(always)]
+    fn new(org: Vec3<F>, dir: Vec3<F>, t_min: F, t_max: F) -> Self {
         let zero = F::splat(0.0);
 
         let dir = Vec3 { x: flush(dir.x), y: flush(dir.y), z: flush(dir.z) };
@@ -292,6 +298,13 @@ impl<F: Float> Packet<F> {
 }
 
 impl Packet<f32> {
+    /// One ray.
+    #[inline(always)]
+    pub(crate) fn of(ray: &Ray) -> Self {
+        let vec3 = |[x, y, z]: [f32; 3]| Vec3 { x, y, z };
+        Self::new(vec3(ray.org), vec3(ray.dir), ray.t_min, ray.t_max)
+    }
+
     /// The ray in every lane.
     #[inline(always)]
     pub(crate) fn splat<F: Float>(&self) -> Packet<F> {

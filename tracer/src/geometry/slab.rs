@@ -155,7 +155,8 @@ pub(crate) fn mixed<F: Float, const N: usize>(
     between(near - ray.org, far - ray.org, ray, from, to)
 }
 
+/// Per axis and lane `a` where the mask is on, else `b`.
 #[inline(always)]
-fn choose<F: Float>([x, y, z]: [F::Mask; 3], a: Vec3<F>, b: Vec3<F>) -> Vec3<F> {
+pub(crate) fn choose<F: Float>([x, y, z]: [F::Mask; 3], a: Vec3<F>, b: Vec3<F>) -> Vec3<F> {
     Vec3 { x: F::select(x, a.x, b.x), y: F::select(y, a.y, b.y), z: F::select(z, a.z, b.z) }
 }

@@ -39,6 +39,13 @@ impl Triangle {
         Aabb::of_points([self.v0, at(&self.e1), at(&self.e2)])
     }
 
+    /// True when it is a point, which nothing hits: what [refitting](crate::bvh::Bvh::refit) leaves of a degenerate triangle.
+    #[inline]
+    #[must_use]
+    pub fn is_point(&self) -> bool {
+        self.e1 == [0.0; 3] && self.e2 == [0.0; 3]
+    }
+
     /// True when no ray can meaningfully hit it: its sides are parallel to within the precision of `f32`
     /// (|e1 x e2| <= 2^-23 |e1| |e2|), a side has no length, or an edge or the box overflows.
     #[inline]

@@ -31,15 +31,19 @@ impl<const W: usize> TriangleGroup<W> {
     pub fn new(triangles: &[Triangle]) -> Self {
         assert!(triangles.len() <= W, "{} triangles in {W} lanes", triangles.len());
         let mut group = Self::EMPTY;
-        for (lane, t) in triangles.iter().enumerate() {
-            for axis in 0..3 {
-                group.v0[axis][lane] = t.v0[axis];
-                group.e1[axis][lane] = t.e1[axis];
-                group.e2[axis][lane] = t.e2[axis];
-            }
-            group.id[lane] = t.id;
-        }
+        triangles.iter().enumerate().for_each(|(lane, t)| group.set(lane, t));
         group
+    }
+
+    /// Puts a triangle into a lane.
+    #[inline]
+    pub(crate) fn set(&mut self, lane: usize, t: &Triangle) {
+        for axis in 0..3 {
+            self.v0[axis][lane] = t.v0[axis];
+            self.e1[axis][lane] = t.e1[axis];
+            self.e2[axis][lane] = t.e2[axis];
+        }
+        self.id[lane] = t.id;
     }
 
     /// The triangle of a lane, if there is one; material and geometry are not known here.

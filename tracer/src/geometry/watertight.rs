@@ -85,9 +85,9 @@ impl Sheared {
         let last = if x >= y && x >= z { 0 } else { 2 - usize::from(y > z) };
         let axes = [(last + 1) % 3, (last + 2) % 3, last];
         let (mut distance, mut size) = (0.0_f32, 0.0_f32);
-        for axis in 0..3 {
-            distance = distance.max(bounds.max[axis] - org[axis]).max(org[axis] - bounds.min[axis]);
-            size = size.max(org[axis].abs());
+        for ((&x, &low), &high) in org.iter().zip(&bounds.min).zip(&bounds.max) {
+            distance = distance.max(high - x).max(x - low);
+            size = size.max(x.abs());
         }
         let wider = f32::EPSILON * (4.0 * distance + size);
         let near = Near::of_octant(octant);

@@ -1,16 +1,19 @@
 //! Ways of finding hits, all behind [`Method`]: rays in, hits out, the same bits from every one of them.
 
 mod auto;
+pub(crate) mod chosen;
+pub(crate) mod nearest;
 mod packet;
-mod query;
+pub(crate) mod query;
 mod ready;
+pub(crate) mod search;
 mod single;
 mod walk;
 mod watertight;
 
 pub use crate::lanes::Width;
 pub use auto::{Auto, Limits};
-pub use packet::{Packet, SharedOrigin, SlabForm};
+pub use packet::{Order, Packet, SharedOrigin, SlabForm};
 pub use single::Single;
 pub use walk::{Arity, Wide};
 pub(crate) use watertight::Vertices;

@@ -5,7 +5,7 @@ use crate::geometry::{Hit, HitBlock};
 use simd::{Block, Float, Vector};
 
 /// Closest or any.
-pub(super) trait Query {
+pub(crate) trait Query {
     /// Results of a block of rays.
     type Block: Send + Clone;
     /// No ray hits anything.
@@ -20,6 +20,9 @@ pub(super) trait Query {
         primitive: u32,
         hit: Candidate<F>,
     );
+
+    /// Lanes for which something else may be found.
+    fn open(block: &Self::Block) -> u16;
 
     /// The distance of an entry of the stack, if it matters whether something nearer was hit.
     #[inline(always)]
@@ -36,7 +39,7 @@ pub(super) trait Query {
     fn copy<F: Float>(from: (&Self::Block, usize), to: (&mut Self::Block, usize));
 }
 
-pub(super) struct Closest;
+pub(crate) struct Closest;
 impl Query for Closest {
     type Block = HitBlock;
     const NOTHING: HitBlock = HitBlock::MISS;
@@ -53,6 +56,11 @@ impl Query for Closest {
         F::select(mask, hit.u, F::load_block(&block.u, chunk)).store_block(&mut block.u, chunk);
         F::select(mask, hit.v, F::load_block(&block.v, chunk)).store_block(&mut block.v, chunk);
         F::Index::select(mask, primitive, before).store_block(&mut block.primitive, chunk);
+    }
+
+    #[inline(always)]
+    fn open(_: &HitBlock) -> u16 {
+        u16::MAX
     }
 
     #[inline(always)]
@@ -77,7 +85,7 @@ impl Query for Closest {
     }
 }
 
-pub(super) struct Any;
+pub(crate) struct Any;
 impl Query for Any {
     type Block = u16;
     const NOTHING: u16 = 0;
@@ -90,6 +98,11 @@ impl Query for Any {
         let t = F::load_block(reach, chunk);
         F::select(hit.mask, F::splat(f32::NEG_INFINITY), t).store_block(reach, chunk);
         *block |= (hit.mask.bitmask() as u16) << (chunk * F::LANES);
+    }
+
+    #[inline(always)]
+    fn open(block: &u16) -> u16 {
+        !block
     }
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! Sixteen rays made ready for traversal, in memory: as packets, or one of them.
 
+use crate::geometry::cull::Cull;
 use crate::geometry::{Packet, RayBlock, Vec3};
 use simd::{Block, Float, Mask};
 
@@ -10,31 +11,45 @@ pub(super) struct Ready {
     dir: [Block<f32>; 3],
     inv_dir: [Block<f32>; 3],
     inv_dir_far: [Block<f32>; 3],
+    /// See [`Cull`].
+    pub(super) cull: [[Block<f32>; 3]; 3],
     pub(super) t_min: Block<f32>,
     /// How far along each ray a hit matters.
     pub(super) reach: Block<f32>,
     /// Which rays can hit something, a bit each.
     pub(super) valid: u16,
+    /// Which of these [`Cull`] is not for.
+    pub(super) odd: u16,
 }
 
 impl Ready {
     /// No rays.
     pub(super) const NONE: Self = {
         let zero = [Block([0.0; 16]); 3];
-        Self { org: zero, dir: zero, inv_dir: zero, inv_dir_far: zero, t_min: zero[0], reach: zero[0], valid: 0 }
+        Self {
+            org: zero,
+            dir: zero,
+            inv_dir: zero,
+            inv_dir_far: zero,
+            cull: [zero; 3],
+            t_min: zero[0],
+            reach: zero[0],
+            valid: 0,
+            odd: 0,
+        }
     };
 
     #[inline(always)]
-    pub(super) fn new<F: Float>(block: &RayBlock) -> Self {
+    pub(super) fn new<F: Float>(block: &RayBlock, largest: f32) -> Self {
         let mut ready = Self::NONE;
-        ready.set::<F>(block);
+        ready.set::<F>(block, largest);
         ready
     }
 
-    /// These rays instead.
+    /// These rays instead; `largest` is that of [`Cull::new`].
     #[inline(always)]
-    pub(super) fn set<F: Float>(&mut self, block: &RayBlock) {
-        self.valid = 0;
+    pub(super) fn set<F: Float>(&mut self, block: &RayBlock, largest: f32) {
+        (self.valid, self.odd) = (0, 0);
         for chunk in 0..16 / F::LANES {
             let rays = Packet::<F>::load(block, chunk);
             rays.org.store(&mut self.org, chunk);
@@ -43,7 +58,10 @@ impl Ready {
             rays.inv_dir_far.store(&mut self.inv_dir_far, chunk);
             rays.t_min.store_block(&mut self.t_min, chunk);
             rays.t_max.store_block(&mut self.reach, chunk);
+            let (cull, ordinary) = Cull::new(&rays, largest);
+            cull.store(&mut self.cull, chunk);
             self.valid |= (rays.valid.bitmask() << (chunk * F::LANES)) as u16;
+            self.odd |= ((rays.valid & !ordinary).bitmask() << (chunk * F::LANES)) as u16;
         }
     }
 

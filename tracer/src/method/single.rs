@@ -105,8 +105,9 @@ where
     fn run<S: Simd>(mut self) -> Counters {
         // Each node on the way leaves all but one of its children.
         let mut stack = vec![0; self.bvh.depth * N];
+        let largest = self.bvh.largest_coordinate();
         for (block, results) in self.rays.iter().zip(self.results) {
-            let ready = Ready::new::<S::Float>(block);
+            let ready = Ready::new::<S::Float>(block, largest);
             let mut found = Q::NOTHING;
             let mut rest = ready.valid;
             while rest != 0 {
@@ -114,7 +115,11 @@ where
                 rest &= rest - 1;
                 self.count.packet();
                 let walk = Walk::new(self.bvh, &ready, lane);
-                walk.run::<Arity<N>, S, Q, C>(Child::node(0), &mut stack, lane, &mut found, &mut self.count);
+                if ready.odd >> lane & 1 == 0 {
+                    walk.run::<Arity<N>, S, Q, C>(Child::node(0), &mut stack, &mut found, &mut self.count);
+                } else {
+                    walk.run_odd::<Q, C>(&mut stack, &mut found, &mut self.count);
+                }
             }
             *results = found;
         }

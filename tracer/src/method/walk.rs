@@ -3,11 +3,12 @@
 use super::query::Query;
 use super::ready::Ready;
 use crate::bvh::{Child, WideBvh, WideNode};
+use crate::geometry::cull::{Boxes, Cull};
 use crate::geometry::moller_trumbore;
-use crate::geometry::slab::{self, Near};
+use crate::geometry::slab::Near;
 use crate::geometry::{Hit, Packet as Rays, Vec3};
 use crate::stats::Count;
-use simd::{Float, Mask, Simd};
+use simd::{Float, Kernel, Level, Mask, Simd};
 
 /// How many children nodes have.
 #[derive(Debug)]
@@ -31,10 +32,31 @@ impl Wide for Arity<16> {
 /// A ray on its way.
 pub(super) struct Walk<'a, const N: usize> {
     bvh: &'a WideBvh<N>,
-    ray: Rays<f32>,
-    near: Near,
-    /// [`Near::upper`] of it.
+    rays: &'a Ready,
+    lane: usize,
+    /// [`Near::upper`] of its octant.
     upper: [usize; 3],
+}
+
+struct Odd<'a, Q: Query, C, const N: usize> {
+    walk: &'a Walk<'a, N>,
+    stack: &'a mut [u64],
+    found: &'a mut Q::Block,
+    count: &'a mut C,
+}
+
+impl<Q: Query, C: Count, const N: usize> Kernel for Odd<'_, Q, C, N>
+where
+    Arity<N>: Wide,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self) {
+        let Self { walk, stack, found, count } = self;
+        let boxes = walk.rays.ray(walk.lane).splat::<<Arity<N> as Wide>::Lanes<S>>();
+        walk.visit::<_, _, S, Q, C>(boxes, Child::node(0), stack, found, count);
+    }
 }
 
 /// A child with the distance where the ray enters its box above it: entries compare as distances do, for none is negative.
@@ -45,23 +67,63 @@ pub(super) fn entry(t_near: f32, child: Child) -> u64 {
 
 impl<'a, const N: usize> Walk<'a, N> {
     #[inline(always)]
-    pub(super) fn new(bvh: &'a WideBvh<N>, rays: &Ready, lane: usize) -> Self {
-        let near = Near::of_octant(rays.octant(lane));
-        Self { bvh, ray: rays.ray(lane), near, upper: near.upper() }
+    pub(super) fn new(bvh: &'a WideBvh<N>, rays: &'a Ready, lane: usize) -> Self {
+        Self { bvh, rays, lane, upper: Near::of_octant(rays.octant(lane)).upper() }
     }
 
     /// From `child` down; `found` has what was found before. Returns how far along the ray a hit still matters.
     #[inline(always)]
     pub(super) fn run<W: Wide, S: Simd, Q: Query, C: Count>(
         &self,
-        mut child: Child,
+        child: Child,
         stack: &mut [u64],
-        lane: usize,
         found: &mut Q::Block,
         count: &mut C,
     ) -> f32 {
-        let (ray, triangle_ray) = (self.ray.splat::<W::Lanes<S>>(), self.ray.splat::<S::Float4>());
-        let mut best = Q::best(found, lane, self.ray.t_max);
+        let boxes = Cull::<W::Lanes<S>>::splat(&self.rays.cull, self.lane);
+        self.visit::<_, _, S, Q, C>(boxes, child, stack, found, count)
+    }
+
+    /// [`Walk::run`] from the root for a ray that [`Cull`] is not for: rare, so it is not worth code at every level.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn run_odd<Q: Query, C: Count>(&self, stack: &mut [u64], found: &mut Q::Block, count: &mut C)
+    where
+        Arity<N>: Wide,
+    {
+        Level::run_scalar(Odd::<Q, C, N> { walk: self, stack, found, count });
+    }
+
+    /// [`Walk::run`] of a leaf.
+    #[inline(always)]
+    pub(super) fn leaf_only<S: Simd, Q: Query, C: Count>(
+        &self,
+        leaf: Child,
+        found: &mut Q::Block,
+        count: &mut C,
+    ) -> f32 {
+        let ray = self.rays.ray(self.lane);
+        let mut best = Q::best(found, self.lane, ray.t_max);
+        self.leaf(leaf, &ray.splat::<S::Float4>(), &mut best, count);
+        if best.is_miss() {
+            return best.t;
+        }
+        Q::store(found, self.lane, &best);
+        if Q::CLOSEST { best.t } else { f32::NEG_INFINITY }
+    }
+
+    #[inline(always)]
+    fn visit<F: Float, B: Boxes<F>, S: Simd, Q: Query, C: Count>(
+        &self,
+        boxes: B,
+        mut child: Child,
+        stack: &mut [u64],
+        found: &mut Q::Block,
+        count: &mut C,
+    ) -> f32 {
+        let (ray, lane) = (self.rays.ray(self.lane), self.lane);
+        let (from, triangle_ray) = (F::splat(ray.t_min), ray.splat::<S::Float4>());
+        let mut best = Q::best(found, lane, ray.t_max);
         let mut free = 0;
         loop {
             if child.is_leaf() {
@@ -73,7 +135,8 @@ impl<'a, const N: usize> Walk<'a, N> {
                 // Only an empty tree has no root.
                 let Some(node) = self.bvh.nodes.get(child.index()) else { break };
                 count.box_test();
-                if let Some(nearest) = self.descend::<_, Q>(node, &ray, best.t, stack, &mut free) {
+                let (t_near, mask) = self.meet(node, boxes, from, best.t);
+                if let Some(nearest) = self.descend::<F, Q>(node, t_near, mask.bitmask(), stack, &mut free) {
                     child = nearest;
                     continue;
                 }
@@ -103,13 +166,11 @@ impl<'a, const N: usize> Walk<'a, N> {
     fn descend<F: Float, Q: Query>(
         &self,
         node: &WideNode<N>,
-        ray: &Rays<F>,
-        reach: f32,
+        t_near: F,
+        mut bits: u32,
         stack: &mut [u64],
         free: &mut usize,
     ) -> Option<Child> {
-        let (t_near, mask) = meet(node, self.upper, ray, reach);
-        let mut bits = mask.bitmask();
         if bits == 0 {
             return None;
         }
@@ -166,7 +227,7 @@ impl<'a, const N: usize> Walk<'a, N> {
         for group in &self.bvh.groups[first..end] {
             count.triangle_test();
             let ray = Rays { t_max: F::splat(best.t), ..*ray };
-            let Some(hit) = moller_trumbore::intersect_group(group, &ray, self.near) else { continue };
+            let Some(hit) = moller_trumbore::intersect_group(group, &ray) else { continue };
             let mut bits = hit.mask.bitmask();
             if bits == 0 {
                 continue;
@@ -184,15 +245,14 @@ impl<'a, const N: usize> Walk<'a, N> {
             }
         }
     }
-}
 
-/// Which boxes the ray meets, and where it enters them.
-#[inline(always)]
-fn meet<F: Float, const N: usize>(node: &WideNode<N>, near: [usize; 3], ray: &Rays<F>, reach: f32) -> (F, F::Mask) {
-    let plane = |i: usize| F::load(&node.planes[i]);
-    let [x, y, z] = near;
-    let near = Vec3 { x: plane(x), y: plane(1 + y), z: plane(2 + z) };
-    let far = Vec3 { x: plane(3 - x), y: plane(4 - y), z: plane(5 - z) };
-    let (t_near, t_far) = slab::between(near - ray.org, far - ray.org, ray, ray.t_min, F::splat(reach));
-    (t_near, t_near.le(t_far))
+    /// Which boxes the ray meets, and where it enters them.
+    #[inline(always)]
+    fn meet<F: Float, B: Boxes<F>>(&self, node: &WideNode<N>, boxes: B, from: F, reach: f32) -> (F, F::Mask) {
+        let (p, [x, y, z]) = (&node.planes, self.upper);
+        let near = Vec3 { x: F::load(&p[x]), y: F::load(&p[1 + y]), z: F::load(&p[2 + z]) };
+        let far = Vec3 { x: F::load(&p[3 - x]), y: F::load(&p[4 - y]), z: F::load(&p[5 - z]) };
+        let (t_near, t_far) = boxes.interval(near, far, from, F::splat(reach));
+        (t_near, t_near.le(t_far))
+    }
 }

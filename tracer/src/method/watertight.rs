@@ -117,7 +117,7 @@ impl<Q: Query, C: Count> Kernel for Trace<'_, Q, C> {
         // Each node on the way leaves all but one of its children, and the root is put there.
         let mut stack = vec![0; bvh.depth * N + 1];
         for (block, results) in self.rays.iter().zip(self.results) {
-            let ready = Ready::new::<S::Float>(block);
+            let ready = Ready::new::<S::Float>(block, bvh.largest_coordinate());
             let mut found = Q::NOTHING;
             let mut rest = ready.valid;
             while rest != 0 {

@@ -2,7 +2,7 @@
 //!
 //! Everything is little-endian, in words of four bytes unless said otherwise: eight bytes [`MAGIC`], the version, the number of
 //! bytes behind this header (eight bytes), a checksum of them (FNV-1a, eight bytes); then the numbers of meshes, nodes and groups, the
-//! first triangle of each mesh, the box around all, the nodes (48 planes, 8 children) and the groups (36 coordinates, 4 ids).
+//! first triangle of each mesh, the mask of each mesh, the box around all, the nodes (48 planes, 8 children) and the groups (36 coordinates, 4 ids).
 
 use super::Scene;
 use crate::Error;
@@ -14,7 +14,7 @@ use simd::Level;
 use std::path::Path;
 
 const MAGIC: &[u8; 8] = b"TRACER\r\n";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 8 + 4 + 8 + 8;
 
 impl Scene {
@@ -32,7 +32,7 @@ impl Scene {
         let mut word = |x: u32| body.extend(x.to_le_bytes());
         let WideBvh { nodes, groups, .. } = &self.bvh;
         [self.first.len(), nodes.len(), groups.len()].iter().for_each(|&n| word(n as u32));
-        self.first.iter().for_each(|&first| word(first));
+        self.first.iter().chain(&self.masks).for_each(|&x| word(x));
         self.bounds.min.iter().chain(&self.bounds.max).for_each(|x| word(x.to_bits()));
         for node in nodes {
             node.planes.as_flattened().iter().for_each(|x| word(x.to_bits()));
@@ -87,13 +87,14 @@ fn parse(bytes: &[u8], level: Level) -> Result<Scene, String> {
     let mut words = Words(body);
     let [meshes, nodes, groups] = [words.word()?, words.word()?, words.word()?].map(|n| n as usize);
     // What the numbers claim is there, before memory is asked for.
-    if body.len() as u128 != 4 * (9 + meshes as u128 + 56 * nodes as u128 + 40 * groups as u128) {
+    if body.len() as u128 != 4 * (9 + 2 * meshes as u128 + 56 * nodes as u128 + 40 * groups as u128) {
         return Err(damaged("its numbers contradict its length".into()));
     }
     let first = (0..meshes).map(|_| words.word()).collect::<Result<Vec<_>, _>>()?;
     if !first.is_sorted() || first.first().is_some_and(|&first| first != 0) {
-        return Err(damaged("its meshes do not follow each other from triangle 0 on".into()));
+        return Err(damaged("its meshes overlap".into()));
     }
+    let masks = (0..meshes).map(|_| words.word()).collect::<Result<Vec<_>, _>>()?;
     let bounds = Aabb { min: words.floats()?, max: words.floats()? };
     let node = |words: &mut Words| {
         let mut node = WideNode::EMPTY;
@@ -120,7 +121,7 @@ fn parse(bytes: &[u8], level: Level) -> Result<Scene, String> {
     let nodes = (0..nodes).map(|_| node(&mut words)).collect::<Result<Vec<_>, _>>()?;
     let groups = (0..groups).map(|_| group(&mut words)).collect::<Result<Vec<_>, _>>()?;
     let bvh = WideBvh::from_parts(nodes, groups).map_err(damaged)?;
-    Ok(Scene { bvh, level, bounds, first, vertices: None })
+    Ok(Scene { bvh, level, bounds, first, masks, vertices: None })
 }
 
 /// Bytes taken from the front.
@@ -153,7 +154,7 @@ mod tests {
 
     fn scene() -> Scene {
         let mesh = crate::model::builtin("balls:1").expect("a name").expect("a size").mesh;
-        Scene::builder().mesh(mesh.clone()).mesh(mesh).build().expect("a valid mesh")
+        Scene::builder().mesh(mesh.clone()).mask(0b10).mesh(mesh).build().expect("a valid mesh")
     }
 
     fn saved() -> Vec<u8> {
@@ -178,6 +179,7 @@ mod tests {
         scene.closest_batch(&rays, &mut a);
         loaded.closest_batch(&rays, &mut b);
         assert_eq!((a.hash(), scene.first, scene.bounds), (b.hash(), loaded.first, loaded.bounds));
+        assert_eq!(loaded.masks, [0b10, u32::MAX]);
         assert!(a.iter().any(|hit| !hit.is_miss()));
         assert_eq!((scene.bvh.depth, scene.bvh.triangles), (loaded.bvh.depth, loaded.bvh.triangles));
     }
@@ -200,15 +202,6 @@ mod tests {
             bytes[at] ^= 0x10;
             fails(&bytes, "the checksum is another");
         }
-    }
-
-    /// No triangle would be before the first mesh: [`Scene::locate`] relies on that.
-    #[test]
-    fn meshes_start_at_zero() {
-        let mut bytes = saved();
-        bytes[HEADER + 12] = 1;
-        let e = parse(&with_checksum(bytes), Level::best()).expect_err("a first triangle of 1");
-        assert!(e.contains("from triangle 0 on"), "{e}");
     }
 
     /// With a checksum that is right, whatever is accepted can be traced.

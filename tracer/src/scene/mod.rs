@@ -1,10 +1,16 @@
 //! Triangles ready to be asked.
 
+mod choose;
 mod file;
+mod nearest;
+#[cfg(test)]
+pub(crate) mod random;
+
+pub(crate) use choose::one_for_each;
 
 use crate::Error;
 use crate::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
-use crate::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch};
+use crate::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
 use crate::method::{Auto, BitVec, Context, Method, Single, Vertices, Watertight};
 use crate::model::Mesh;
 use crate::progress::{Progress, Silent};
@@ -27,6 +33,27 @@ use simd::Level;
 /// ```
 ///
 /// Many rays are found much faster as a batch, in whatever order: see [`Scene::closest_batch`].
+///
+/// # What composes with what
+///
+/// | query                        | one            | batch, any length and order | filter       | mask for each | filter and mask         |
+/// |------------------------------|----------------|-----------------------------|--------------|---------------|-------------------------|
+/// | [`Scene`]: first hit         | `closest`      | `closest_batch`             | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`Scene`]: any hit           | `occluded`     | `occluded_batch`            | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`Scene`]: nearest point     | `nearest`      | `nearest_batch`             | `.._where`   | `is_visible` in `.._where` | `is_visible` in `.._where` |
+/// | [`World`]: first hit         | `closest`      | `closest_batch`             | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`World`]: any hit           | `occluded`     | `occluded_batch`            | `.._where`   | `.._masked`   | `is_visible` in `.._where` |
+/// | [`World`]: nearest point     | no             | no                          | no           | no            | no                      |
+///
+/// A [`World`] is made of instances of scenes and of sets of [`Primitives`] in any mixture; all of its queries see both. One level: no
+/// world in a world. The nearest point of a scene is not that of its instance, as affine maps change distances: ask the scenes.
+/// `.._masked` is for batches of a [`Scene`]; for one ray it is `is_visible` in `closest_where`.
+///
+/// A [watertight](SceneBuilder::watertight) scene is that for `closest`, `occluded` and their batches; filters, masks and a [`World`] go through
+/// the usual triangle test, whose hits differ by rounding. It can neither be saved nor refitted.
+///
+/// [`World`]: crate::World
+/// [`Primitives`]: crate::Primitives
 #[derive(Debug, Clone)]
 pub struct Scene {
     bvh: WideBvh<8>,
@@ -34,6 +61,8 @@ pub struct Scene {
     bounds: Aabb,
     /// Number of the first triangle of each mesh.
     first: Vec<u32>,
+    /// Who sees each mesh: [`SceneBuilder::mask`].
+    masks: Vec<u32>,
     /// Of a scene that is [watertight](SceneBuilder::watertight).
     vertices: Option<Vertices>,
 }
@@ -45,6 +74,8 @@ impl Scene {
             meshes: Vec::new(),
             level: Level::best(),
             config: BuildConfig::default(),
+            budget: u64::MAX,
+            masks: Vec::new(),
             watertight: false,
             progress: &Silent,
         }
@@ -110,7 +141,7 @@ impl Scene {
         Auto::new(&self.bvh, self.level)
     }
 
-    /// The method behind all queries of a scene that is [watertight](SceneBuilder::watertight).
+    /// The method behind the queries of a scene that is [watertight](SceneBuilder::watertight), but for those with filters and masks.
     #[must_use]
     pub fn watertight(&self) -> Option<Watertight<'_>> {
         self.vertices.as_ref().map(|vertices| Watertight::new(&self.bvh, vertices, self.level))
@@ -119,8 +150,57 @@ impl Scene {
     /// Which mesh, in the order they were added, and which of its triangles a hit's primitive is.
     #[must_use]
     pub fn locate(&self, primitive: u32) -> (usize, u32) {
-        let mesh = self.first.partition_point(|&first| first <= primitive).saturating_sub(1);
-        (mesh, primitive - self.first.get(mesh).copied().unwrap_or_default())
+        locate(&self.first, primitive)
+    }
+
+    /// Takes meshes whose vertices moved in the place of those that the scene was built of, in the same order: much faster than
+    /// building, with the hits of a scene that is built anew, bit for bit. Rays find them the slower the further vertices moved against each
+    /// other. A triangle that has become [degenerate](crate::geometry::Triangle::is_degenerate) is not hit any more, and comes back
+    /// when it is none in a later call.
+    ///
+    /// ```
+    /// use tracer::{Scene, geometry::Ray, model::Mesh};
+    ///
+    /// # fn main() -> Result<(), tracer::Error> {
+    /// let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mut mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
+    /// let mut scene = Scene::builder().mesh(mesh.clone()).build()?;
+    /// mesh.positions.iter_mut().for_each(|p| p[2] += 0.5);
+    /// scene.refit(&[mesh])?;
+    /// let hit = scene.closest(&Ray::new([0.25, 0.25, 2.0], [0.0, 0.0, -1.0]));
+    /// assert_eq!(hit.map(|hit| hit.t), Some(1.5));
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Geometry`], and the scene stays as it was: when a mesh is not acceptable; when there are other meshes, or other numbers of triangles in
+    /// them, than the scene was built of; when a triangle was degenerate then and is not any more. Build the scene again then.
+    /// [`Error::Usage`] for a [watertight](SceneBuilder::watertight) scene.
+    pub fn refit(&mut self, meshes: &[Mesh]) -> Result<(), Error> {
+        if self.vertices.is_some() {
+            return Err(Error::Usage("a watertight scene is not refitted: build it again".into()));
+        }
+        validate(meshes)?;
+        let mut number = 0;
+        let same = meshes.len() == self.first.len()
+            && meshes.iter().zip(&self.first).all(|(mesh, &first)| {
+                let starts_there = number == first as usize;
+                number += mesh.triangles.len();
+                starts_there
+            });
+        if !same {
+            return Err(Error::Geometry(
+                "other meshes, or other numbers of triangles, than the scene was built of: build it again".into(),
+            ));
+        }
+        let first = &self.first;
+        self.bvh.refit_to(number, |id| {
+            let (mesh, local) = locate(first, id);
+            Triangle::new(meshes[mesh].triangle(local as usize), id, 0)
+        })?;
+        self.bounds = meshes.iter().fold(Aabb::EMPTY, |b, mesh| b.union(&mesh.bounds()));
+        Ok(())
     }
 
     /// The box around all vertices.
@@ -140,8 +220,10 @@ impl Scene {
 #[must_use]
 pub struct SceneBuilder<'a> {
     meshes: Vec<Mesh>,
+    masks: Vec<u32>,
     level: Level,
     config: BuildConfig,
+    budget: u64,
     watertight: bool,
     progress: &'a dyn Progress,
 }
@@ -150,6 +232,16 @@ impl<'a> SceneBuilder<'a> {
     /// Adds a mesh.
     pub fn mesh(mut self, mesh: Mesh) -> Self {
         self.meshes.push(mesh);
+        self.masks.push(u32::MAX);
+        self
+    }
+
+    /// Who sees the mesh added last: rays with a mask that has a bit in common with this one ([`Scene::closest_batch_masked`]). A mesh
+    /// without a mask has all bits.
+    pub fn mask(mut self, mask: u32) -> Self {
+        if let Some(last) = self.masks.last_mut() {
+            *last = mask;
+        }
         self
     }
 
@@ -163,9 +255,16 @@ impl<'a> SceneBuilder<'a> {
         Self { level, ..self }
     }
 
-    /// With another builder of trees than the default.
+    /// With another builder of trees than the default: [`BuildConfig::fast`], [`BuildConfig::medium`] (the default),
+    /// [`BuildConfig::high`]. The hits are the same.
     pub fn build_config(self, config: BuildConfig) -> Self {
         Self { config, ..self }
+    }
+
+    /// Refuses to build when that would take more than this many bytes of memory at once, beside the meshes, as
+    /// [`BuildConfig::peak_bytes`] has it.
+    pub fn memory_budget(self, bytes: u64) -> Self {
+        Self { budget: bytes, ..self }
     }
 
     /// Whether no ray may slip through between triangles that share an edge or a vertex: their indices, or the bits of their coordinates,
@@ -201,11 +300,11 @@ impl<'a> SceneBuilder<'a> {
     /// Builds the tree, on the threads of the current rayon pool.
     ///
     /// # Errors
-    /// [`Error::Geometry`] with the mesh and its vertex or triangle at fault; [`Error::Cancelled`].
+    /// [`Error::Geometry`] with the mesh and its vertex or triangle at fault; [`Error::Usage`] when the memory budget does not suffice, before
+    /// memory is asked for; [`Error::Cancelled`].
     pub fn build(self) -> Result<Scene, Error> {
-        for (i, mesh) in self.meshes.iter().enumerate() {
-            mesh.validate().map_err(|e| Error::Geometry(format!("mesh {i}: {e}")))?;
-        }
+        validate(&self.meshes)?;
+        self.check_budget()?;
         let mut first = Vec::with_capacity(self.meshes.len());
         let mut all = Mesh::default();
         for mesh in self.meshes {
@@ -222,8 +321,36 @@ impl<'a> SceneBuilder<'a> {
         let build = if self.watertight { Bvh::build_watertight } else { Bvh::build };
         let bvh = build(&all, &self.config, self.progress)?.collapse(&CollapseConfig::default());
         let vertices = self.watertight.then(|| Vertices::new(&bvh, &all));
-        Ok(Scene { bvh, level: self.level, bounds: all.bounds(), first, vertices })
+        Ok(Scene { bvh, level: self.level, bounds: all.bounds(), first, masks: self.masks, vertices })
     }
+}
+
+impl SceneBuilder<'_> {
+    fn check_budget(&self) -> Result<(), Error> {
+        let triangles = self.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        let needed = self.config.peak_bytes(triangles);
+        if needed <= self.budget {
+            return Ok(());
+        }
+        let least = BuildConfig::medium().peak_bytes(triangles);
+        let advice =
+            if least <= self.budget { "take BuildConfig::medium()" } else { "raise it or take fewer triangles" };
+        Err(Error::Usage(format!(
+            "to build a tree over {triangles} triangles takes up to {needed} bytes of memory, the budget is {}: {advice}",
+            self.budget
+        )))
+    }
+}
+
+fn validate(meshes: &[Mesh]) -> Result<(), Error> {
+    let named = |(i, mesh): (usize, &Mesh)| mesh.validate().map_err(|e| Error::Geometry(format!("mesh {i}: {e}")));
+    meshes.iter().enumerate().try_for_each(named)
+}
+
+/// Which mesh, and which of its triangles, when these are the first ones of the meshes.
+fn locate(first: &[u32], primitive: u32) -> (usize, u32) {
+    let mesh = first.partition_point(|&first| first <= primitive).saturating_sub(1);
+    (mesh, primitive - first.get(mesh).copied().unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -271,6 +398,56 @@ mod tests {
                 assert_eq!(scene.occluded(&ray), occluded.get(i), "{level}, ray {i}");
             }
         }
+    }
+
+    #[test]
+    fn moved_meshes_are_as_if_built_anew() {
+        let balls = crate::model::builtin("balls:1").expect("a name").expect("a size").mesh;
+        let mut meshes = [square(0.0), balls, square(2.0)];
+        let build = |meshes: &[Mesh]| {
+            let builder = meshes.iter().fold(Scene::builder(), |builder, mesh| builder.mesh(mesh.clone()));
+            builder.build().expect("valid meshes")
+        };
+        let mut scene = build(&meshes);
+        meshes.iter_mut().zip([0.1, 0.2, 0.3]).for_each(|(mesh, by)| {
+            mesh.positions.iter_mut().for_each(|p| *p = [p[0] + by * p[1], p[1] - 0.1 * p[0] * p[2], p[2] + by]);
+        });
+        scene.refit(&meshes).expect("the same meshes");
+        let new = build(&meshes);
+        let rays: RayBatch = (0..900)
+            .map(|i| Ray::new([(i % 30) as f32 * 0.1 - 1.5, (i / 30) as f32 * 0.1 - 1.5, 5.0], [0.01, 0.02, -1.0]))
+            .collect();
+        let hash = |scene: &Scene| {
+            let mut hits = HitBatch::new();
+            scene.closest_batch(&rays, &mut hits);
+            hits.hash()
+        };
+        assert_eq!((hash(&scene), scene.bounds()), (hash(&new), new.bounds()));
+        scene.bvh.validate().expect("a tree that is well-formed");
+
+        meshes.swap(0, 1);
+        let e = scene.refit(&meshes).expect_err("other numbers of triangles");
+        assert!(e.to_string().contains("build it again"), "{e}");
+        assert!(scene.refit(&meshes[..2]).is_err());
+        meshes.swap(0, 1);
+        meshes[2].triangles.pop();
+        assert!(scene.refit(&meshes).expect_err("fewer").to_string().contains("build the tree again"));
+        meshes[1].positions[7][2] = f32::NAN;
+        assert!(scene.refit(&meshes).expect_err("NaN").to_string().starts_with("mesh 1: vertex 7"));
+        assert_eq!(hash(&scene), hash(&new));
+    }
+
+    #[test]
+    fn a_budget_is_kept() {
+        let build = |budget: u64, config| {
+            Scene::builder().mesh(square(0.0)).mesh(square(1.0)).memory_budget(budget).build_config(config).build()
+        };
+        let needed = BuildConfig::insertion(0).peak_bytes(4);
+        build(needed, BuildConfig::insertion(0)).expect("enough");
+        let e = build(needed - 1, BuildConfig::insertion(0)).expect_err("too little").to_string();
+        assert!(e.contains(&format!("up to {needed} bytes")) && e.contains("take BuildConfig::medium()"), "{e}");
+        let e = build(100, BuildConfig::fast()).expect_err("far too little");
+        assert!(matches!(&e, Error::Usage(message) if message.contains("raise it")), "{e}");
     }
 
     #[test]

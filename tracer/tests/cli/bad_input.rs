@@ -97,10 +97,13 @@ fn options_that_make_no_sense() {
         folder.fails(&format!("{command} --level mmx"), 2, &["unknown level 'mmx'", "avx512"]);
         folder.fails(&format!("{command} --threads 0"), 2, &["--threads"]);
         folder.fails(&format!("{command} --threads 1000000"), 2, &["--threads 1000000", "4096"]);
-        folder.fails(&format!("{command} --build best"), 2, &["binned, insertion"]);
+        folder.fails(&format!("{command} --build best"), 2, &["fast, medium, high, insertion"]);
         folder.fails(&format!("{command} --seed 1"), 2, &["--build insertion"]);
+        folder.fails(&format!("{command} --seed 1 --build high"), 2, &["--build insertion"]);
         folder.fails(&format!("{command} --what"), 2, &["--what"]);
     }
+    folder.fails("render s.obj --method best", 2, &["packet, ordered, single4"]);
+    folder.fails("render s.obj --method auto --width 4", 2, &["--method packet and ordered"]);
     folder.fails("render s.obj --width 5", 2, &["unknown width '5'", "16"]);
     folder.fails("render s.obj -o out.jpg", 2, &["out.jpg", ".png or .exr"]);
     folder.fails("render s.obj --camera 0,0,0/0,0,0", 2, &["they must differ"]);

@@ -89,7 +89,7 @@ fn hits_computed_by_hand() {
         assert!(same, "ray {i}: {hit:?} instead of {expected:?}");
     }
     assert_eq!((&report["rays"], &report["hits"], &report["threads"]), (&10.into(), &8.into(), &1.into()));
-    assert_eq!((&report["method"], &report["scene"]), (&"packet".into(), &"squares".into()));
+    assert_eq!((&report["method"], &report["scene"]), (&"auto".into(), &"squares".into()));
     assert_eq!(report["level"], simd::Level::best().to_string());
     for key in ["build_ms", "trace_ms", "wall_ms", "mrays_per_s"] {
         assert!(report[key].as_f64().is_some_and(|n| n >= 0.0), "{key}: {}", report[key]);
@@ -122,7 +122,17 @@ fn the_same_bytes_whatever_traces() {
     assert!((300..999).contains(&number), "{number} hits");
     let mut ways: Vec<String> =
         levels().iter().flat_map(|l| ["4", "8", "16"].map(|w| format!("--level {l} --width {w}"))).collect();
-    ways.extend(["--threads 3", "--build insertion --seed 9", "--slab conservative", "--repeat 2"].map(String::from));
+    ways.extend(
+        [
+            "--threads 3",
+            "--build insertion --seed 9",
+            "--build fast",
+            "--build high",
+            "--slab conservative",
+            "--repeat 2",
+        ]
+        .map(String::from),
+    );
     for way in ways {
         folder.run(&format!("trace balls:1 --rays rays.npy --hits hits.npy {way}"));
         assert!(folder.read("hits.npy") == first, "{way}");

@@ -40,6 +40,28 @@ fn the_comparison_as_json() {
 }
 
 #[test]
+fn every_method_finds_the_same() {
+    let folder = Folder::new();
+    let packet = folder.json("render balls:1 --size 64x48 --shadows --json");
+    assert_eq!(packet["method"], "packet");
+    for method in ["ordered", "single4", "single8", "single16", "auto"] {
+        let other = folder.json(&format!("render balls:1 --size 64x48 --shadows --json --method {method}"));
+        assert_eq!(other["method"], method);
+        assert_eq!(
+            (&other["hits_hash"], &other["image_hash"]),
+            (&packet["hits_hash"], &packet["image_hash"]),
+            "{method}"
+        );
+        let report = folder.json(&format!("compare balls:1 --size 64x48 --repeat 1 --format json --method {method}"));
+        assert_eq!(report["all_identical"], true, "{method}");
+        let rows = report["rows"].as_array().expect("rows");
+        let named = rows.iter().filter(|row| row["name"].as_str().is_some_and(|name| name.contains(method))).count();
+        assert_eq!(named, levels().len() * if method == "ordered" { 3 } else { 1 }, "{method}");
+        assert_eq!(rows[0]["hits_hash"], packet["hits_hash"], "{method}");
+    }
+}
+
+#[test]
 fn the_comparison_in_all_formats() {
     let folder = Folder::with("a_&_b.obj", SQUARES);
     let compare = |more: &str| folder.run(&format!("compare a_&_b.obj --size 24x24 --repeat 1 --threads 2 {more}"));
@@ -100,10 +122,21 @@ fn what_the_machine_has() {
     );
 
     let scene = folder.json("info balls:1 --json")["scene"].clone();
-    assert_eq!((&scene["triangles"], &scene["build"]), (&1922.into(), &"binned".into()));
+    assert_eq!((&scene["triangles"], &scene["build"]), (&1922.into(), &"medium".into()));
     assert!(scene["bytes_per_triangle"].as_f64().is_some_and(|b| b > 48.0 && b < 130.0), "{scene}");
     let insertion = folder.json("info balls:1 --json --build insertion")["scene"].clone();
     assert!(insertion["sah_cost"].as_f64() > scene["sah_cost"].as_f64(), "{insertion} {scene}");
+    let of = |build: &str| folder.json(&format!("info balls:1 --json --build {build}"))["scene"].clone();
+    let cost = |build: &str| of(build)["sah_cost"].as_f64().expect("a cost");
+    assert!(cost("high") < cost("medium"));
+    let overlap = |build: &str| folder.json(&format!("info balls:1 --json --epo --build {build}"))["scene"].clone();
+    assert!(overlap("high")["epo_cost"].as_f64() < overlap("fast")["epo_cost"].as_f64());
+    assert!(scene["epo_cost"].is_null() && folder.run("info balls:1 --epo").contains("EPO cost"));
+    let (wide, peak) = (scene["wide_bytes"].as_u64().expect("bytes"), scene["peak_bytes"].as_u64().expect("bytes"));
+    assert!(scene["wide_bytes_per_triangle"].as_f64().is_some_and(|b| (b - wide as f64 / 1922.0).abs() < 1e-6));
+    assert!(wide > 1922 * 40 && wide < peak && peak < 1922 * 500, "{scene}");
+    let names = ["binned", "fast", "high"].map(|build| of(build)["build"].as_str().map(String::from));
+    assert_eq!(names, ["medium", "fast", "high"].map(|name| Some(name.into())));
     assert!(folder.run("info rings:1").contains("6,242"));
     assert!(folder.files().is_empty());
 }

@@ -1,6 +1,7 @@
 //! Options that several subcommands share.
 
 use crate::machine;
+use crate::method::MethodChoice;
 use clap::{Args, ValueEnum};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use simd::Level;
@@ -8,8 +9,8 @@ use std::fmt;
 use std::num::NonZeroUsize;
 use std::str::FromStr;
 use tracer::Error;
-use tracer::bvh::{BuildConfig, Bvh};
-use tracer::method::{Packet, SlabForm, Width};
+use tracer::bvh::BuildConfig;
+use tracer::method::{SlabForm, Width};
 use tracer::model::Camera;
 
 /// What the picture shows.
@@ -46,6 +47,10 @@ pub struct BuildOptions {
 pub struct TraceOptions {
     #[command(flatten)]
     pub level: LevelOption,
+    /// How hits are found: the results are the same, the speed is not [default: packet to render; auto to trace, unless --width or
+    /// --slab is given]
+    #[arg(long, value_name = "METHOD", value_enum)]
+    pub method: Option<MethodChoice>,
     /// Rays per packet: auto, 1, 4, 8 or 16
     #[arg(long, value_name = "RAYS", default_value_t)]
     pub width: Width,
@@ -117,27 +122,36 @@ impl FromStr for Size {
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum Builder {
-    /// Surface area heuristic over bins: fast to build and to trace
+    /// Along a space-filling curve: built twice as fast as medium, traced slower
+    Fast,
+    /// Surface area heuristic over bins: fast to build and to trace (also called binned)
     #[default]
-    Binned,
+    #[value(alias = "binned")]
+    Medium,
+    /// Medium, then improved by moving subtrees: built up to ten times as long, traced fastest
+    High,
     /// One triangle after the other, as in the paper of 2003: slow
     Insertion,
 }
 
 impl BuildOptions {
     pub fn config(&self) -> Result<BuildConfig, Error> {
-        match (self.build, self.seed) {
-            (Builder::Insertion, seed) => Ok(BuildConfig::insertion(seed.unwrap_or(0))),
-            (Builder::Binned, None) => Ok(BuildConfig::default()),
-            (Builder::Binned, Some(_)) => {
-                Err(Error::Usage("--seed is for --build insertion: give both or leave --seed out".into()))
-            }
+        if self.seed.is_some() && self.build != Builder::Insertion {
+            return Err(Error::Usage("--seed is for --build insertion: give both or leave --seed out".into()));
         }
+        Ok(match self.build {
+            Builder::Fast => BuildConfig::fast(),
+            Builder::Medium => BuildConfig::medium(),
+            Builder::High => BuildConfig::high(),
+            Builder::Insertion => BuildConfig::insertion(self.seed.unwrap_or(0)),
+        })
     }
 
     pub fn name(&self) -> &'static str {
         match self.build {
-            Builder::Binned => "binned",
+            Builder::Fast => "fast",
+            Builder::Medium => "medium",
+            Builder::High => "high",
             Builder::Insertion => "insertion",
         }
     }
@@ -153,12 +167,20 @@ pub enum Slab {
 }
 
 impl TraceOptions {
-    pub fn method<'a>(&self, bvh: &'a Bvh, level: Level) -> Packet<'a> {
-        let form = match self.slab {
+    /// The form of the box test.
+    pub fn form(&self) -> SlabForm {
+        match self.slab {
             Slab::Exact => SlabForm::Exact,
             Slab::Conservative => SlabForm::Conservative,
-        };
-        Packet::new(bvh, level, self.width).with_form(form)
+        }
+    }
+
+    /// The method that was asked for, else `usual`; packets where only these have the options that were given.
+    pub fn method(&self, usual: MethodChoice) -> Result<MethodChoice, Error> {
+        if let Some(method) = self.method {
+            return method.check(self.width, self.form()).map(|()| method);
+        }
+        Ok(if usual.check(self.width, self.form()).is_ok() { usual } else { MethodChoice::Packet })
     }
 }
 

@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::process::ExitCode;
 use tracer::Error;
-use tracer::bvh::Node;
+use tracer::bvh::{CollapseConfig, Node};
 use tracer::geometry::Triangle;
 
 /// Show the CPU's levels, and what a scene's tree looks like
@@ -16,13 +16,17 @@ use tracer::geometry::Triangle;
 #[command(after_help = "\
 Examples:
   tracer info                                       CPU and levels
-  tracer info rings --build insertion               the paper's tree")]
+  tracer info rings --build insertion               the paper's tree
+  tracer info rings --build high --epo              the best tree, and its overlap")]
 pub struct Args {
     /// A file or a built-in scene; without one, only the machine is shown
     scene: Option<String>,
     /// Print JSON
     #[arg(long)]
     json: bool,
+    /// Measure the tree's effective overlap (EPO) too: slower than building it
+    #[arg(long)]
+    epo: bool,
     #[command(flatten)]
     build: BuildOptions,
     #[command(flatten)]
@@ -57,8 +61,13 @@ struct SceneReport {
     mean_leaf: f64,
     depth: usize,
     sah_cost: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    epo_cost: Option<f64>,
     bytes: usize,
     bytes_per_triangle: f64,
+    wide_bytes: usize,
+    wide_bytes_per_triangle: f64,
+    peak_bytes: u64,
     load_ms: f64,
     build_ms: f64,
 }
@@ -69,7 +78,7 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
     let pool = args::pool(args.threads.threads)?;
     let (levels, missing) = machine::levels();
     let scene = match &args.scene {
-        Some(spec) => Some(pool.install(|| measure(spec, &args.build, console))?),
+        Some(spec) => Some(pool.install(|| measure(spec, args, console))?),
         None => None,
     };
     let report = Report {
@@ -92,23 +101,30 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn measure(spec: &str, options: &BuildOptions, console: &Console) -> Result<SceneReport, Error> {
+fn measure(spec: &str, args: &Args, console: &Console) -> Result<SceneReport, Error> {
     let (scene, load_ms) = workload::open(spec, console)?;
-    let (bvh, build_ms) = workload::build(&scene.mesh, options, console)?;
+    let (bvh, build_ms) = workload::build(&scene.mesh, &args.build, console)?;
     let stats = bvh.stats();
+    let epo_cost = if args.epo { Some(bvh.epo_cost(console)?) } else { None };
+    console.clear();
+    let wide_bytes = bvh.collapse::<8>(&CollapseConfig::default()).bytes();
     let triangles = scene.mesh.triangles.len();
     Ok(SceneReport {
         name: scene.name,
         triangles,
         degenerate: triangles - stats.triangles,
-        build: options.name(),
+        build: args.build.name(),
         nodes: stats.nodes,
         leaves: stats.leaves,
         mean_leaf: stats.mean_leaf,
         depth: stats.max_depth,
         sah_cost: stats.sah_cost,
+        epo_cost,
         bytes: stats.bytes,
         bytes_per_triangle: stats.bytes_per_triangle,
+        wide_bytes,
+        wide_bytes_per_triangle: wide_bytes as f64 / stats.triangles.max(1) as f64,
+        peak_bytes: args.build.config()?.peak_bytes(triangles),
         load_ms,
         build_ms,
     })
@@ -133,8 +149,17 @@ fn text(report: &Report) -> String {
         line("leaves", format!("{:.2} triangles on average", scene.mean_leaf));
         line("depth", scene.depth.to_string());
         line("SAH cost", format!("{:.2} box and triangle tests of a random line that hits the root", scene.sah_cost));
+        if let Some(cost) = scene.epo_cost {
+            line(
+                "EPO cost",
+                format!("{cost:.2} of these tests for nothing, where a ray ends on a random point of the scene"),
+            );
+        }
         let bytes = HumanBytes(scene.bytes as u64);
         line("memory", format!("{bytes} of nodes and triangles, {:.1} bytes per triangle", scene.bytes_per_triangle));
+        let (bytes, peak) = (HumanBytes(scene.wide_bytes as u64), HumanBytes(scene.peak_bytes));
+        let each = scene.wide_bytes_per_triangle;
+        line("wide tree", format!("{bytes}, {each:.1} bytes per triangle; while it is built at most {peak}"));
     }
     text
 }

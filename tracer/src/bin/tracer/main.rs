@@ -7,6 +7,7 @@ mod console;
 mod generate;
 mod info;
 mod machine;
+mod method;
 mod npy;
 mod picture;
 mod render;
@@ -82,6 +83,7 @@ fn first_look(console: &Console) -> Result<ExitCode, Error> {
     let render = render::Args::default();
     pool.install(|| render::picture(&render, &work, console))?;
     console.print("\n")?;
-    let report = compare::measure(&work, &picture, compare::DEFAULT_REPEAT, &pool, console)?;
+    let report =
+        compare::measure(&work, method::MethodChoice::Packet, &picture, compare::DEFAULT_REPEAT, &pool, console)?;
     compare::show(&report, compare::Format::Table, None, console)
 }

@@ -2,6 +2,7 @@
 
 use crate::args::{self, BuildOptions, PictureOptions, TraceOptions};
 use crate::console::Console;
+use crate::method::MethodChoice;
 use crate::picture;
 use crate::workload::{Workload, mrays_per_s, ms};
 use indicatif::{HumanBytes, HumanCount};
@@ -20,6 +21,7 @@ use tracer::render::{Frame, Settings};
 Examples:
   tracer render                                     the built-in sphereflake to balls.png
   tracer render atrium.obj.zst --size 1920x1080 --camera -60,86,10/0,40,0 --shadows
+  tracer render rings --method auto                 as many rays together as agree
   tracer render tree:8 -o tree.exr --level sse2 --width 4 --threads 1 --json")]
 pub struct Args {
     /// A file or a built-in scene [default: balls]
@@ -51,6 +53,7 @@ struct Report {
     camera: String,
     shadows: bool,
     level: String,
+    method: String,
     packet: usize,
     threads: usize,
     eye_ms: f64,
@@ -72,6 +75,7 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
         picture::Kind::of(path)?;
     }
     args.trace.level.choose()?;
+    args.trace.method(MethodChoice::Packet)?;
     args.build.config()?;
     args.picture.size.check()?;
     let pool = args::pool(args.trace.threads.threads)?;
@@ -90,14 +94,16 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let camera = args.picture.camera.unwrap_or_else(|| scene.camera_or_default());
     let (lanes, shadows) = (args.trace.width, args.picture.shadows);
     let settings = Settings { width: size.width, height: size.height, level, lanes, shadows };
-    let method = args.trace.method(&work.bvh, level);
+    let choice = args.trace.method(MethodChoice::Packet)?;
+    let tree = choice.tree(&work.bvh);
+    let method = choice.over(&work.bvh, &tree, level, lanes, args.trace.form());
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
 
     console.stage("render", 4);
     let mut frame = Frame::new(scene, &work.surfaces, camera, settings);
     let ((), eye_ms) = timed(|| frame.eye_rays());
     console.advance(1);
-    let (cast, cast_ms) = timed(|| frame.cast(&method, &mut cx));
+    let (cast, cast_ms) = timed(|| frame.cast(&*method, &mut cx));
     cast?;
     console.advance(1);
     let (image, shade_ms) = timed(|| frame.shade(&cx));
@@ -124,6 +130,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         camera: camera.to_string(),
         shadows,
         level: level.to_string(),
+        method: choice.name(),
         packet: lanes.lanes(level),
         threads: rayon::current_num_threads(),
         eye_ms,
@@ -152,14 +159,14 @@ fn text(r: &Report) -> String {
     let shadows = if r.shadows { " and shadow" } else { "" };
     let covered = 100.0 * r.hits as f64 / (r.width * r.height) as f64;
     let (output, bytes) = (r.output.display(), HumanBytes(r.output_bytes as u64));
-    let Report { scene, load_ms, build, build_ms, camera, width, height, level, packet, threads, .. } = r;
+    let Report { scene, load_ms, build, build_ms, camera, width, height, level, method, packet, threads, .. } = r;
     let Report { eye_ms, cast_ms, shade_ms, total_ms, mrays_per_s, .. } = r;
     format!(
         "\
 scene     {scene}, {triangles} triangles, read in {load_ms:.0} ms
 tree      {build}, {nodes} nodes, built in {build_ms:.0} ms
 camera    {camera}
-rendered  {width}x{height}, level {level}, {packet} rays at a time, threads: {threads}; {covered:.1} % of the picture is covered
+rendered  {width}x{height}, level {level}, method {method}, {packet} lanes, threads: {threads}; {covered:.1} % of the picture is covered
   eye rays {eye_ms:>9.2} ms
   casting  {cast_ms:>9.2} ms, {mrays_per_s:.2} Mrays/s ({rays} eye{shadows} rays)
   shading  {shade_ms:>9.2} ms

@@ -2,6 +2,7 @@
 
 use crate::args::{self, BuildOptions, TraceOptions};
 use crate::console::Console;
+use crate::method::MethodChoice;
 use crate::npy;
 use crate::workload::{self, median, mrays_per_s, ms};
 use cpu_time::{ProcessTime, ThreadTime};
@@ -14,7 +15,7 @@ use std::time::{Duration, Instant};
 use tracer::Error;
 use tracer::bvh::Bvh;
 use tracer::geometry::{HitBatch, RayBatch};
-use tracer::method::{BitVec, Context, Method};
+use tracer::method::{BitVec, Context};
 use tracer::progress::Progress;
 
 /// Trace a batch of rays that NumPy wrote
@@ -70,7 +71,7 @@ struct Report {
     mrays_per_s: f64,
     level: String,
     width: usize,
-    method: &'static str,
+    method: String,
     threads: usize,
 }
 
@@ -99,7 +100,9 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
 /// Traces and writes the hits; what concerns the scene is left for the caller to tell.
 fn trace(args: &Args, bvh: &Bvh, rays: &RayBatch, console: &Console) -> Result<Report, Error> {
     let (level, _) = args.trace.level.choose()?;
-    let method = args.trace.method(bvh, level);
+    let choice = args.trace.method(MethodChoice::Auto)?;
+    let tree = choice.tree(bvh);
+    let method = choice.over(bvh, &tree, level, args.trace.width, args.trace.form());
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     let (mut hits, mut occluded) = (HitBatch::new(), BitVec::new());
     console.stage("trace", args.repeat.get() as u64);
@@ -136,7 +139,7 @@ fn trace(args: &Args, bvh: &Bvh, rays: &RayBatch, console: &Console) -> Result<R
         mrays_per_s: mrays_per_s(rays.len(), if threads == 1 { trace_ms } else { wall_ms }),
         level: level.to_string(),
         width: args.trace.width.lanes(level),
-        method: method.name(),
+        method: choice.name(),
         threads,
     })
 }
@@ -166,11 +169,11 @@ impl CpuClock {
 
 fn text(r: &Report, args: &Args) -> String {
     let [rays, hits, triangles] = [r.rays, r.hits, r.triangles].map(|n| HumanCount(n as u64).to_string());
-    let Report { scene, build, build_ms, trace_ms, wall_ms, mrays_per_s, level, width, threads, .. } = r;
+    let Report { scene, build, build_ms, trace_ms, wall_ms, mrays_per_s, level, method, width, threads, .. } = r;
     format!(
         "\
 scene     {scene}, {triangles} triangles; {build} tree built in {build_ms:.0} ms
-traced    {rays} rays, {hits} hit; level {level}, {width} rays at a time, {threads} threads
+traced    {rays} rays, {hits} hit; level {level}, method {method}, {width} lanes, {threads} threads
 time      {trace_ms:.2} ms of CPU, {wall_ms:.2} ms on the clock: {mrays_per_s:.2} Mrays/s
 wrote     {}
 ",

@@ -1,10 +1,11 @@
 //! The surface area heuristic over bins, top down (Wald 2007, "On fast construction of SAH-based bounding volume hierarchies"), on all
 //! three axes, and over all primitives where few are left.
 
-use super::bins::{Binning, PIECE};
+use super::bins::Binning;
+use super::part::Part;
 use super::primitive::{Box4, Primitive, centers, union};
 use super::sah::Split;
-use super::{Tree, sweep};
+use super::{MAX_DEPTH, PIECE, Tree, sweep};
 use crate::Error;
 use crate::bvh::Node;
 use crate::progress::Progress;
@@ -36,9 +37,6 @@ pub enum ChildOrder {
     LowerFirst,
 }
 
-/// No leaf is deeper (the root is at depth 0): where only balanced splits still fit, splits are balanced.
-pub const MAX_DEPTH: u32 = 64;
-
 pub(super) fn build(mut primitives: Vec<Primitive>, config: &Config, progress: &dyn Progress) -> Result<Tree, Error> {
     let mut ids = vec![0; primitives.len()];
     let mut scratch = primitives.clone();
@@ -46,38 +44,9 @@ pub(super) fn build(mut primitives: Vec<Primitive>, config: &Config, progress: &
     let range = Range { src: &mut primitives, dst: &mut scratch, ids: &mut ids, first: 0, depth: 0, bounds };
     let config = Config { max_leaf: config.max_leaf.clamp(1, Node::MAX_LEAF), ..*config };
     let top = Builder { config, progress }.top(range)?;
-    let mut nodes = Vec::with_capacity(top.len());
-    top.flatten(&mut nodes);
-    Ok(Tree { nodes, ids })
-}
-
-/// Part of a tree; skip pointers count from the part's first node.
-enum Part {
-    Subtree(Vec<Node>),
-    Inner(Node, Box<[Part; 2]>),
-}
-
-impl Part {
-    /// Number of nodes.
-    fn len(&self) -> usize {
-        match self {
-            Self::Subtree(nodes) => nodes.len(),
-            Self::Inner(node, _) => node.skip() as usize,
-        }
-    }
-
-    /// Appends the nodes, depth first.
-    fn flatten(self, nodes: &mut Vec<Node>) {
-        let base = nodes.len() as u32;
-        let moved = |n: Node| n.with_skip(n.skip() + base);
-        match self {
-            Self::Subtree(part) => nodes.extend(part.into_iter().map(moved)),
-            Self::Inner(node, children) => {
-                nodes.push(moved(node));
-                children.into_iter().for_each(|c| c.flatten(nodes));
-            }
-        }
-    }
+    // Before the nodes are put together, which takes as much.
+    drop((primitives, scratch));
+    Ok(Tree { nodes: top.into_nodes(), ids })
 }
 
 /// The primitives of a subtree to be built.
@@ -125,8 +94,7 @@ impl Builder<'_> {
                 Ok([a, b]) => {
                     let (a, b) = rayon::join(|| self.top(a), || self.top(b));
                     let (a, b) = (a?, b?);
-                    let node = Node::inner(&bounds, (1 + a.len() + b.len()) as u32);
-                    return Ok(Part::Inner(node, Box::new([a, b])));
+                    return Ok(Part::inner(&bounds, a, b));
                 }
                 Err(leaf) => range = leaf,
             }

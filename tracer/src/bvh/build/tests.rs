@@ -45,6 +45,14 @@ fn configs() -> Vec<BuildConfig> {
             child_order: binned::ChildOrder::LowerFirst,
         }),
         BuildConfig::Binned(binned::Config { max_leaf: 99, traversal_cost: 1e9, ..Default::default() }),
+        BuildConfig::fast(),
+        BuildConfig::Linear(linear::Config { max_leaf: 1, traversal_cost: 0.0 }),
+        BuildConfig::high(),
+        BuildConfig::Reinsertion(reinsertion::Config {
+            binned: binned::Config { max_leaf: 3, ..Default::default() },
+            rounds: 3,
+            stride: 0,
+        }),
         BuildConfig::insertion(7),
         BuildConfig::Insertion(insertion::Config { seed: None, max_children: 2, sort_children: false }),
     ]
@@ -61,8 +69,8 @@ fn check(mesh: &Mesh) -> Vec<Bvh> {
         ids.sort_unstable();
         assert_eq!(ids, expected, "{config:?}");
         assert!(bvh.triangles.iter().all(|t| *t == triangle(mesh, t.id)));
-        if matches!(config, BuildConfig::Binned(_)) {
-            assert!(bvh.stats().max_depth <= binned::MAX_DEPTH as usize);
+        if matches!(config, BuildConfig::Binned(_) | BuildConfig::Linear(_)) {
+            assert!(bvh.stats().max_depth <= MAX_DEPTH as usize);
         }
         bvh
     };
@@ -179,7 +187,7 @@ fn insertion_depends_on_the_seed_alone() {
 #[test]
 fn larger_children_come_first() {
     let m = soup(5000, 13, [1.0; 3], 0.05);
-    for config in [BuildConfig::default(), BuildConfig::insertion(0)] {
+    for config in [BuildConfig::default(), BuildConfig::high(), BuildConfig::insertion(0)] {
         let bvh = Bvh::build(&m, &config, &Silent).unwrap();
         let area = |i: usize| bvh.nodes[i].bounds().half_area();
         for (i, node) in bvh.nodes.iter().enumerate().filter(|(_, n)| n.triangles().1 == 0) {
@@ -201,6 +209,12 @@ fn trees_are_good() {
     let median = cost(&BuildConfig::Binned(binned::Config { traversal_cost: f32::NAN, ..Default::default() }));
     assert!(binned < 155.0 && binned < median, "binned {binned}, with leaves as large as can be {median}");
     assert!(insertion < 1.5 * binned, "insertion {insertion}, binned {binned}");
+    let (fast, high) = (cost(&BuildConfig::fast()), cost(&BuildConfig::high()));
+    assert!(fast < 1.2 * binned && high < 0.98 * binned, "fast {fast}, medium {binned}, high {high}");
+    let balls = crate::model::builtin("balls:2").expect("a name").expect("a size").mesh;
+    let cost = |config: &BuildConfig| Bvh::build(&balls, config, &Silent).unwrap().stats().sah_cost;
+    let (fast, binned, high) = (cost(&BuildConfig::fast()), cost(&BuildConfig::medium()), cost(&BuildConfig::high()));
+    assert!(fast < 1.2 * binned && high < 0.85 * binned, "fast {fast}, medium {binned}, high {high}");
 }
 
 #[test]
@@ -213,7 +227,7 @@ fn all_triangles_are_reported_and_cancelling_stops() {
     }
     impl Progress for Counting {
         fn stage(&self, _: &str, total: u64) {
-            self.total.store(total, Ordering::Relaxed);
+            self.total.fetch_add(total, Ordering::Relaxed);
         }
         fn advance(&self, n: u64) {
             self.done.fetch_add(n, Ordering::Relaxed);
@@ -226,7 +240,12 @@ fn all_triangles_are_reported_and_cancelling_stops() {
     for config in configs() {
         let all = Counting::default();
         Bvh::build(&m, &config, &all).unwrap();
-        assert_eq!((all.done.into_inner(), all.total.into_inner()), (50_000, 50_000));
+        let rounds = if let BuildConfig::Reinsertion(config) = config { u64::from(config.rounds) } else { 0 };
+        assert_eq!((all.done.into_inner(), all.total.into_inner()), (50_000 + rounds, 50_000 + rounds));
+        if rounds > 0 {
+            let most = Counting { limit: 50_001, ..Default::default() };
+            assert!(matches!(Bvh::build(&m, &config, &most), Err(Error::Cancelled)));
+        }
         let some = Counting { limit: 10_000, ..Default::default() };
         assert!(matches!(Bvh::build(&m, &config, &some), Err(Error::Cancelled)));
         assert!(some.done.into_inner() < 50_000);

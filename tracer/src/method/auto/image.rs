@@ -55,7 +55,7 @@ pub(super) fn gather<S: Simd, Q: Query>(rays: &[RayBlock], row: usize, x: usize,
         }
     }
     for (ready, block) in tile.rays.iter_mut().zip(&blocks) {
-        ready.set::<S::Float>(block);
+        ready.set::<S::Float>(block, tile.largest);
     }
 }
 

@@ -36,7 +36,7 @@ pub struct Limits {
 impl Default for Limits {
     /// What was fastest.
     fn default() -> Self {
-        Self { together: 0.97, coherent: 0.9, blocks: 3, rays: 4, mixed_closest: 12, mixed_any: 3, scatter: 0.05 }
+        Self { together: 0.97, coherent: 0.9, blocks: 3, rays: 4, mixed_closest: 10, mixed_any: 5, scatter: 0.05 }
     }
 }
 
@@ -116,7 +116,7 @@ impl<Q: Query, C: Count> Kernel for Trace<'_, Q, C> {
 
     #[inline(always)]
     fn run<S: Simd>(mut self) -> Counters {
-        let mut tile = Tile::<Q>::new(self.bvh.depth, self.limits);
+        let mut tile = Tile::<Q>::new(self.bvh, self.limits);
         let tiles = self.row.map_or(self.rays.len().div_ceil(BLOCKS), |row| row.div_ceil(16));
         if self.row.is_some() {
             self.results.fill(Q::NOTHING);
@@ -127,7 +127,7 @@ impl<Q: Query, C: Count> Kernel for Trace<'_, Q, C> {
                 None => {
                     let rays = &self.rays[number * BLOCKS..];
                     for block in 0..BLOCKS {
-                        tile.rays[block].set::<S::Float>(rays.get(block).unwrap_or(&RayBlock::NONE));
+                        tile.set::<S::Float>(block, rays.get(block).unwrap_or(&RayBlock::NONE));
                     }
                 }
             }

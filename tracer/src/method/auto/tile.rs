@@ -3,14 +3,16 @@
 use super::Limits;
 use super::bounds::{Bounds, Interval};
 use crate::bvh::{Child, WideBvh, WideNode};
+use crate::geometry::cull::{Boxes, Cull};
 use crate::geometry::moller_trumbore;
-use crate::geometry::slab::{self, Near, PerRay};
-use crate::geometry::{Packet, Triangle, Vec3};
+use crate::geometry::slab::{Near, PerRay};
+use crate::geometry::{Packet, RayBlock, Triangle, Vec3};
 use crate::method::query::Query;
 use crate::method::ready::Ready;
 use crate::method::walk::{Arity, Walk, entry};
 use crate::stats::Count;
 use simd::{Block, Float, Mask, Simd, Vector};
+use std::hint::black_box;
 
 /// Blocks of sixteen rays in a tile.
 pub(super) const BLOCKS: usize = 16;
@@ -25,6 +27,8 @@ pub(super) struct Tile<Q: Query> {
     /// Starts of the intervals, infinite for rays that are not traced now.
     from: [Block<f32>; BLOCKS],
     bounds: Bounds,
+    /// See [`Cull::new`].
+    pub(super) largest: f32,
     limits: Limits,
     stack: Vec<Entry>,
     single_stack: Vec<u64>,
@@ -40,13 +44,15 @@ struct Entry {
 }
 
 impl<Q: Query> Tile<Q> {
-    /// Without rays, for a tree of this depth.
-    pub(super) fn new(depth: usize, limits: Limits) -> Self {
+    /// Without rays.
+    pub(super) fn new(bvh: &WideBvh<N>, limits: Limits) -> Self {
+        let depth = bvh.depth;
         Self {
             rays: [const { Ready::NONE }; BLOCKS],
             found: [Q::NOTHING; BLOCKS],
             from: [Block([0.0; 16]); BLOCKS],
             bounds: Bounds::NONE,
+            largest: bvh.largest_coordinate(),
             limits,
             // Each node on the way leaves all but one of its children; a block starts where the tile is.
             stack: vec![Entry::default(); 2 * depth * N + 1],
@@ -54,13 +60,30 @@ impl<Q: Query> Tile<Q> {
         }
     }
 
+    /// Sixteen rays.
+    #[inline(always)]
+    pub(super) fn set<F: Float>(&mut self, block: usize, rays: &RayBlock) {
+        self.rays[block].set::<F>(rays, self.largest);
+    }
+
     /// Finds the hits of all rays.
     #[inline(always)]
     pub(super) fn trace<S: Simd, C: Count>(&mut self, bvh: &WideBvh<N>, count: &mut C) {
         let mut octants = [None; BLOCKS];
         let mut blocks = 0_u16;
-        for (block, (rays, octant)) in self.rays.iter().zip(&mut octants).enumerate() {
+        for (block, (rays, octant)) in self.rays.iter_mut().zip(&mut octants).enumerate() {
             self.found[block] = Q::NOTHING;
+            let mut odd = rays.odd;
+            rays.valid &= !odd;
+            while odd != 0 {
+                let lane = odd.trailing_zeros() as usize % 16;
+                odd &= odd - 1;
+                count.packet();
+                let (found, stack) = (&mut self.found[block], &mut self.single_stack);
+                Walk::new(bvh, rays, lane).run_odd::<Q, C>(stack, found, count);
+                // Done: it meets no box of the others' test, whatever that computes of it.
+                rays.reach.0[lane] = f32::NEG_INFINITY;
+            }
             if rays.valid != 0 {
                 blocks |= 1 << block;
                 *octant = rays.common_octant::<S::Float16>();
@@ -133,21 +156,21 @@ impl<Q: Query> Tile<Q> {
 
     /// All blocks of the mask from the root on.
     #[inline(always)]
-    fn tile<S: Simd, C: Count>(&mut self, bvh: &WideBvh<N>, near: Near, blocks: u16, count: &mut C) {
-        let upper = near.upper();
-        let all = self.bounds.of_all::<S::Float8>(blocks, near);
-        let each = self.bounds.per_block::<S::Float16>(near);
+    fn tile<S: Simd, C: Count>(&mut self, bvh: &WideBvh<N>, octant: Near, blocks: u16, count: &mut C) {
+        let upper = octant.upper();
+        let all = self.bounds.of_all::<S::Float8>(blocks, octant);
+        let each = self.bounds.per_block::<S::Float16>(octant);
         let mut free = 0;
         let (mut child, mut active) = (Child::node(0), blocks);
         loop {
             if child.is_leaf() {
-                self.leaf::<S::Float16, C>(bvh, near, child, active, count);
+                self.leaf::<S::Float16, C>(bvh, octant, child, active, count);
             } else if active.count_ones() <= self.limits.blocks {
                 let mut rest = active;
                 while rest != 0 {
                     let block = rest.trailing_zeros() as usize % BLOCKS;
                     rest &= rest - 1;
-                    self.block::<S, C>(bvh, near, child, block, free, count);
+                    self.block::<S, C>(bvh, octant, child, block, free, count);
                 }
             } else {
                 let Some(node) = bvh.nodes.get(child.index()) else { break };
@@ -194,8 +217,10 @@ impl<Q: Query> Tile<Q> {
         while rest != 0 {
             let block = rest.trailing_zeros() as usize % BLOCKS;
             rest &= rest - 1;
-            let ray = self.rays[block].packet::<F>(&self.from[block]);
-            let (from, to) = slab::between(near - ray.org, far - ray.org, &ray, ray.t_min, ray.t_max);
+            let rays = &self.rays[block];
+            let boxes = Cull::<F>::load(&rays.cull, 0);
+            let start = F::load_block(&self.from[block], 0);
+            let (from, to) = boxes.interval(near, far, start, F::load_block(&rays.reach, 0));
             meeting |= u16::from(from.le(to).any()) << block;
         }
         meeting
@@ -206,34 +231,37 @@ impl<Q: Query> Tile<Q> {
     fn block<S: Simd, C: Count>(
         &mut self,
         bvh: &WideBvh<N>,
-        near: Near,
+        octant: Near,
         mut child: Child,
         block: usize,
         bottom: usize,
         count: &mut C,
     ) {
-        let upper = near.upper();
-        let all = self.bounds.of_block::<S::Float8>(block, near);
-        let ray = self.rays[block].packet::<S::Float16>(&self.from[block]);
+        let upper = octant.upper();
+        let all = self.bounds.of_block::<S::Float8>(block, octant);
         let mut free = bottom;
         let mut active = u16::MAX;
         loop {
             if child.is_leaf() {
-                self.leaf::<S::Float16, C>(bvh, near, child, 1 << block, count);
+                self.leaf::<S::Float16, C>(bvh, octant, child, 1 << block, count);
             } else if active.count_ones() <= self.limits.rays {
                 self.singles::<S, C>(bvh, child, block, active, count);
             } else {
                 let Some(node) = bvh.nodes.get(child.index()) else { break };
                 count.box_test();
                 let (t_near, mask) = meet(node, upper, &all, self.bounds.reach.0[block]);
-                let reach = S::Float16::load_block(&self.rays[block].reach, 0);
+                // As in `mixed`.
+                let rays = &self.rays[black_box(block) % BLOCKS];
+                let boxes = Cull::<S::Float16>::load(&rays.cull, 0);
+                let (start, reach) =
+                    (S::Float16::load_block(&self.from[block], 0), S::Float16::load_block(&rays.reach, 0));
                 assert!(free + N <= self.stack.len(), "the stack has room for the children of every node on the way");
                 let (at, t_near, mut rest) = (free, t_near.to_block(), mask.bitmask());
                 while rest != 0 {
                     let i = rest.trailing_zeros() as usize % N;
                     rest &= rest - 1;
                     let (near, far) = planes::<S::Float16>(node, upper, i);
-                    let (from, to) = slab::between(near - ray.org, far - ray.org, &ray, ray.t_min, reach);
+                    let (from, to) = boxes.interval(near, far, start, reach);
                     let active = from.le(to).bitmask() as u16;
                     if active != 0 {
                         push::<Q>(bvh, &mut self.stack, at, &mut free, t_near.0[i], node.children[i], active);
@@ -246,8 +274,8 @@ impl<Q: Query> Tile<Q> {
                 }
                 free -= 1;
                 let entry = self.stack[free];
-                (child, active) = (Child::from_bits(entry.key as u32), entry.active);
-                if Q::distance(entry.key) <= self.bounds.reach.0[block] {
+                (child, active) = (Child::from_bits(entry.key as u32), entry.active & Q::open(&self.found[block]));
+                if active != 0 && Q::distance(entry.key) <= self.bounds.reach.0[block] {
                     break;
                 }
             }
@@ -258,7 +286,6 @@ impl<Q: Query> Tile<Q> {
     #[inline(always)]
     fn mixed<S: Simd, C: Count>(&mut self, bvh: &WideBvh<N>, block: usize, count: &mut C) {
         let ray = self.rays[block].packet::<S::Float16>(&self.from[block]);
-        let signs = ray.signs();
         let limit = if Q::CLOSEST { self.limits.mixed_closest } else { self.limits.mixed_any };
         let infinity = S::Float16::splat(f32::INFINITY);
         let mut free = 0;
@@ -272,13 +299,21 @@ impl<Q: Query> Tile<Q> {
                 let Some(node) = bvh.nodes.get(child.index()) else { break };
                 count.box_test();
                 assert!(free + N <= self.stack.len(), "the stack has room for the children of every node on the way");
-                let reach = S::Float16::load_block(&self.rays[block].reach, 0);
+                // Loaded anew for each node, from where the compiler cannot know: kept in between, all of it would be spilled by the
+                // loops for single rays and read again for each child.
+                let rays = &self.rays[black_box(block) % BLOCKS];
+                let boxes = Cull::<S::Float16>::load(&rays.cull, 0).mixed();
+                let (start, reach) = (
+                    S::Float16::load_block(&self.from[black_box(block) % BLOCKS], 0),
+                    S::Float16::load_block(&rays.reach, 0),
+                );
                 let bottom = free;
                 for i in 0..N {
                     if node.children[i] == Child::NONE {
                         break;
                     }
-                    let (t_near, t_far) = slab::mixed(&node.planes, i, &ray, signs, ray.t_min, reach);
+                    let (low, high) = planes(node, [0; 3], i);
+                    let (t_near, t_far) = boxes.interval(low, high, start, reach);
                     let meets = t_near.le(t_far);
                     if meets.any() {
                         let nearest =
@@ -294,8 +329,8 @@ impl<Q: Query> Tile<Q> {
                 }
                 free -= 1;
                 let entry = self.stack[free];
-                (child, active) = (Child::from_bits(entry.key as u32), entry.active);
-                if f32::from_bits((entry.key >> 32) as u32) <= self.bounds.reach.0[block] {
+                (child, active) = (Child::from_bits(entry.key as u32), entry.active & Q::open(&self.found[block]));
+                if active != 0 && Q::distance(entry.key) <= self.bounds.reach.0[block] {
                     break;
                 }
             }
@@ -345,15 +380,17 @@ impl<Q: Query> Tile<Q> {
         while rest != 0 {
             let lane = rest.trailing_zeros() as usize % 16;
             rest &= rest - 1;
-            // An occluded ray has nothing to find.
-            if rays.reach.0[lane] < rays.t_min.0[lane] {
-                continue;
-            }
             let (found, stack) = (&mut self.found[block], &mut self.single_stack);
             let walk = Walk::new(bvh, rays, lane);
-            rays.reach.0[lane] = walk.run::<Arity<N>, S, Q, C>(child, stack, lane, found, count);
+            if child.is_leaf() {
+                rays.reach.0[lane] = walk.leaf_only::<S, Q, C>(child, found, count);
+                continue;
+            }
+            rays.reach.0[lane] = walk.run::<Arity<N>, S, Q, C>(child, stack, found, count);
         }
-        self.update_reach::<S::Float16>(block);
+        if Q::CLOSEST {
+            self.update_reach::<S::Float16>(block);
+        }
     }
 
     /// The triangles of a leaf, for the rays of some blocks.

@@ -4,6 +4,7 @@ use super::report::{Paper, Report, Row, Tests};
 use crate::args::{self, PictureOptions};
 use crate::console::Console;
 use crate::machine;
+use crate::method::{MethodChoice, Tree};
 use crate::workload::{Workload, median, mrays_per_s, ms};
 use cpu_time::ThreadTime;
 use rayon::ThreadPool;
@@ -12,7 +13,7 @@ use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
 use tracer::Error;
 use tracer::geometry::HitBatch;
-use tracer::method::{Context, Method, Packet, Width};
+use tracer::method::{Context, Method, Packet, SlabForm, Width};
 use tracer::model::Camera;
 use tracer::progress::Progress;
 use tracer::render::{EyeRays, Frame, Settings};
@@ -21,6 +22,7 @@ use tracer::stats::Counters;
 /// A row of the comparison.
 struct Case {
     name: String,
+    method: MethodChoice,
     level: Level,
     width: Width,
     one_thread: Vec<Sample>,
@@ -40,6 +42,8 @@ struct Sample {
 /// What all frames have in common.
 struct Task<'a> {
     work: &'a Workload,
+    /// Of the method that is compared.
+    tree: Tree,
     camera: Camera,
     options: &'a PictureOptions,
     console: &'a Console,
@@ -48,6 +52,7 @@ struct Task<'a> {
 /// Measures every level and width of this CPU; `pool` has all threads.
 pub fn measure(
     work: &Workload,
+    method: MethodChoice,
     options: &PictureOptions,
     repeat: NonZeroUsize,
     pool: &ThreadPool,
@@ -55,9 +60,10 @@ pub fn measure(
 ) -> Result<Report, Error> {
     let load_average = machine::load_average();
     let camera = options.camera.unwrap_or_else(|| work.scene.camera_or_default());
-    let task = Task { work, camera, options, console };
+    let tree = pool.install(|| method.tree(&work.bvh));
+    let task = Task { work, tree, camera, options, console };
     let one = args::pool(NonZeroUsize::new(1))?;
-    let mut cases = cases();
+    let mut cases = cases(method);
     console.stage("compare", (cases.len() * (repeat.get() + 1)) as u64);
     for round in 0..=repeat.get() {
         for case in &mut cases {
@@ -72,7 +78,7 @@ pub fn measure(
             console.advance(1);
         }
     }
-    let tests = pool.install(|| task.count())?;
+    let tests = if method == MethodChoice::Packet { pool.install(|| task.count())? } else { Vec::new() };
     console.clear();
     Ok(task.report(&cases, tests, pool.current_num_threads(), load_average))
 }
@@ -81,40 +87,53 @@ fn cpu_time() -> Duration {
     ThreadTime::now().as_duration()
 }
 
-/// The three serial rows first, then all levels of this CPU.
-fn cases() -> Vec<Case> {
-    const WIDTHS: [Width; 3] = [Width::Four, Width::Eight, Width::Sixteen];
+/// The three serial rows first, which are packets always, then all levels of this CPU.
+fn cases(method: MethodChoice) -> Vec<Case> {
     let serial = Level::new(Isa::Serial).map(|l| (l, Width::Four));
     let plain = [(Level::SCALAR, Width::One), (Level::SCALAR, Width::Four)];
-    let mut cases: Vec<(Level, Width)> = serial.into_iter().chain(plain).collect();
-    for case in Level::available().flat_map(|level| WIDTHS.map(|width| (level, width))) {
-        if !cases.contains(&case) {
-            cases.push(case);
+    let serial = serial.into_iter().chain(plain).map(|(level, width)| Case::new(MethodChoice::Packet, level, width));
+    let widths: &[Width] =
+        if method.has_packets() { &[Width::Four, Width::Eight, Width::Sixteen] } else { &[Width::Auto] };
+    let mut cases: Vec<Case> = serial.collect();
+    for level in Level::available() {
+        for &width in widths {
+            let case = Case::new(method, level, width);
+            if cases.iter().all(|other| other.name != case.name) {
+                cases.push(case);
+            }
         }
     }
-    let case = |(level, width): (Level, Width)| {
+    cases
+}
+
+impl Case {
+    fn new(method: MethodChoice, level: Level, width: Width) -> Self {
         let n = width.lanes(level);
-        let name = match level.isa() {
-            _ if n == 1 => "f32, one lane".into(),
-            Isa::Serial => format!("emulated float{n}"),
-            Isa::Scalar => format!("float{n} as LLVM likes"),
-            isa => format!("{} float{n}", isa.name().to_uppercase()),
+        let upper = level.isa().name().to_uppercase();
+        let name = match (method, level.isa()) {
+            (MethodChoice::Packet, _) if n == 1 => "f32, one lane".into(),
+            (MethodChoice::Packet, Isa::Serial) => format!("emulated float{n}"),
+            (MethodChoice::Packet, Isa::Scalar) => format!("float{n} as LLVM likes"),
+            (MethodChoice::Packet, _) => format!("{upper} float{n}"),
+            (MethodChoice::Ordered, _) => format!("{upper} ordered, float{n}"),
+            _ => format!("{upper} {}", method.name()),
         };
-        Case { name, level, width, one_thread: Vec::new(), all_threads: Vec::new() }
-    };
-    cases.into_iter().map(case).collect()
+        Self { name, method, level, width, one_thread: Vec::new(), all_threads: Vec::new() }
+    }
 }
 
 impl Task<'_> {
     /// Renders one frame on the current pool; `now` is the clock.
     fn frame(&self, case: &Case, now: &dyn Fn() -> Duration) -> Result<Sample, Error> {
         let mut cx = Context { counters: None, cancel: Some(self.console.cancel()) };
-        let method = Packet::new(&self.work.bvh, case.level, case.width);
+        // The rows in emulation need no other tree.
+        let tree = if case.method.has_packets() { &Tree::Binary } else { &self.tree };
+        let method = case.method.over(&self.work.bvh, tree, case.level, case.width, SlabForm::Exact);
         let mut frame = Frame::new(&self.work.scene, &self.work.surfaces, self.camera, self.settings(case));
         let start = now();
         frame.eye_rays();
         let eye = now();
-        frame.cast(&method, &mut cx)?;
+        frame.cast(&*method, &mut cx)?;
         let cast = now();
         let image = frame.shade(&cx)?;
         let end = now();
@@ -211,7 +230,7 @@ fn row(case: &Case, baseline: Option<Sample>, rays: usize) -> Row {
     let differs = |s: &&Sample| baseline.is_some_and(|b| hashes(s) != hashes(&b));
     let shown = one.iter().chain(all).find(differs).or(one.first()).map_or([0; 2], hashes);
     let width = case.width.lanes(case.level);
-    let paper = Paper::of(case.level.isa(), width);
+    let paper = Paper::of(case.level.isa(), width).filter(|_| case.method == MethodChoice::Packet);
     Row {
         name: case.name.clone(),
         level: case.level.isa().name(),
@@ -245,12 +264,12 @@ mod tests {
     }
 
     fn case(one_thread: Vec<Sample>, all_threads: Vec<Sample>) -> Case {
-        Case { name: "x".into(), level: Level::SCALAR, width: Width::Four, one_thread, all_threads }
+        Case { one_thread, all_threads, ..Case::new(MethodChoice::Packet, Level::SCALAR, Width::Four) }
     }
 
     #[test]
     fn serial_rows_come_first_and_none_twice() {
-        let cases = cases();
+        let cases = cases(MethodChoice::Packet);
         let names: Vec<&str> = cases.iter().map(|c| c.name.as_str()).collect();
         if Level::new(Isa::Serial).is_some() {
             assert_eq!(names[..3], ["emulated float4", "f32, one lane", "float4 as LLVM likes"]);

@@ -9,6 +9,7 @@ pub use measure::measure;
 
 use crate::args::{self, BuildOptions, PictureOptions, ThreadsOption};
 use crate::console::{Console, json};
+use crate::method::MethodChoice;
 use crate::workload::Workload;
 use clap::ValueEnum;
 use report::Report;
@@ -31,6 +32,7 @@ Müller 2003. Ends with exit code 1 if any level finds other hits or another pic
 Examples:
   tracer compare                                    the sphereflake, as a table
   tracer compare rings --format markdown
+  tracer compare rings --method auto                the same for another way of finding hits
   tracer compare atrium.obj -o speed.svg            a chart; .json, .csv and .md likewise")]
 pub struct Args {
     /// A file or a built-in scene
@@ -40,6 +42,9 @@ pub struct Args {
     picture: PictureOptions,
     #[command(flatten)]
     build: BuildOptions,
+    /// How hits are found at all levels; the three rows in emulation are packets always
+    #[arg(long, value_name = "METHOD", value_enum, default_value_t = MethodChoice::Packet, help_heading = "Measurement")]
+    method: MethodChoice,
     /// Rounds of measurement after one to warm up; medians are reported, so let it be odd
     #[arg(long, value_name = "N", default_value_t = DEFAULT_REPEAT, help_heading = "Measurement")]
     repeat: NonZeroUsize,
@@ -82,7 +87,7 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
     let format = args.format.or_else(|| output.map(Format::of)).unwrap_or(Format::Table);
     let pool = args::pool(args.threads.threads)?;
     let work = pool.install(|| Workload::load(&args.scene, &args.build, console))?;
-    let report = measure(&work, &args.picture, args.repeat, &pool, console)?;
+    let report = measure(&work, args.method, &args.picture, args.repeat, &pool, console)?;
     show(&report, format, output, console)
 }
 

@@ -19,7 +19,7 @@ pub fn table(report: &Report) -> String {
     for (name, value) in facts(report) {
         let _ = writeln!(text, "{name:<12} {value}");
     }
-    let _ = write!(text, "\n{}\n\n{}\n\n", rows(report, PLAIN), tests(report, PLAIN));
+    write_tables(&mut text, report, PLAIN);
     for note in notes(report) {
         let _ = writeln!(text, "{note}");
     }
@@ -32,12 +32,18 @@ pub fn markdown(report: &Report) -> String {
     for (name, value) in facts(report) {
         let _ = writeln!(text, "- {name}: {value}");
     }
-    let style = presets::ASCII_MARKDOWN;
-    let _ = write!(text, "\n{}\n\n{}\n\n", rows(report, style), tests(report, style));
+    write_tables(&mut text, report, presets::ASCII_MARKDOWN);
     for note in notes(report) {
         let _ = writeln!(text, "{note}\n");
     }
     text
+}
+
+fn write_tables(text: &mut String, report: &Report, style: TableStyle) {
+    let _ = write!(text, "\n{}\n\n", rows(report, style));
+    if !report.tests.is_empty() {
+        let _ = write!(text, "{}\n\n", tests(report, style));
+    }
 }
 
 /// A line of names, then a line for each row.

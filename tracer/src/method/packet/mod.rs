@@ -1,14 +1,18 @@
 //! Packets of rays through the skip-pointer tree: Geimer & Müller 2003, section 3.3.
 
+mod found;
+mod ordered;
+
 use super::{BitVec, Context, Method, PORTION, in_portions};
 use crate::Error;
 use crate::bvh::Bvh;
-use crate::geometry::moller_trumbore::{self, Candidate};
+use crate::geometry::moller_trumbore;
 use crate::geometry::slab::{self, Near, Origin, PerRay, Shared};
-use crate::geometry::{Hit, HitBatch, HitBlock, Packet as Rays, RayBatch, RayBlock};
+use crate::geometry::{HitBatch, Packet as Rays, RayBatch, RayBlock};
 use crate::lanes::{self, Lanes, Width};
 use crate::stats::{Count, Counters, NoCount};
-use simd::{Float, Isa, Level, Mask, Vector};
+use found::{Any, Closest, Found, Query};
+use simd::{Float, Isa, Level, Mask};
 
 /// How a packet's box test becomes one answer. Both find the same hits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -19,6 +23,16 @@ pub enum SlabForm {
     /// A packet goes on unless all rays miss the slabs or all leave them before their start: two simpler tests that let a few
     /// packets through which no ray needs. (With strict comparisons; the paper's print loses flat boxes.)
     Conservative,
+}
+
+/// Which child of a node comes first. Both find the same hits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Order {
+    /// The one that is stored first: the paper's loop, without a stack.
+    #[default]
+    Stored,
+    /// The one whose box the packet enters first; the other waits on a stack, and is passed over if a hit lies before it.
+    NearFirst,
 }
 
 /// Whether packets make use of it that all rays of a batch start at one point. Both ways find the same hits.
@@ -41,6 +55,7 @@ pub struct Packet<'a> {
     level: Level,
     width: usize,
     form: SlabForm,
+    order: Order,
     shared_origin: SharedOrigin,
 }
 
@@ -53,11 +68,18 @@ impl<'a> Packet<'a> {
             level,
             width: width.lanes(level),
             form: SlabForm::default(),
+            order: Order::default(),
             shared_origin: SharedOrigin::default(),
         }
     }
 
-    /// With this form of the slab test.
+    /// With children in this order.
+    #[must_use]
+    pub fn with_order(self, order: Order) -> Self {
+        Self { order, ..self }
+    }
+
+    /// With this form of the slab test. ([`Order::NearFirst`] has one alone, and shares no origin.)
     #[must_use]
     pub fn with_form(self, form: SlabForm) -> Self {
         Self { form, ..self }
@@ -83,13 +105,14 @@ impl<'a> Packet<'a> {
     fn find<Q: Query>(&self, rays: &RayBatch, results: &mut [Q::Block], cx: &mut Context<'_>) -> Result<(), Error> {
         let origin = self.origin(rays);
         in_portions(PORTION, rays, results, cx, |count, rays, results| {
-            let Self { bvh, level, width, form, .. } = *self;
+            let Self { bvh, level, width, form, order, .. } = *self;
             if count {
                 // The work is the same at every level.
                 let count = Counters::default();
-                lanes::run_scalar(width, Trace::<Q, _> { bvh, form, origin, rays, results, count })
+                lanes::run_scalar(width, Trace::<Q, _> { bvh, form, order, origin, rays, results, count })
             } else {
-                lanes::run(level, width, Trace::<Q, _> { bvh, form, origin, rays, results, count: NoCount })
+                let count = NoCount;
+                lanes::run(level, width, Trace::<Q, _> { bvh, form, order, origin, rays, results, count })
             }
         })
     }
@@ -121,6 +144,7 @@ impl Method for Packet<'_> {
 struct Trace<'a, Q: Query, C> {
     bvh: &'a Bvh,
     form: SlabForm,
+    order: Order,
     /// Where all rays start, to be made use of.
     origin: Option<[f32; 3]>,
     rays: &'a [RayBlock],
@@ -133,16 +157,18 @@ impl<Q: Query, C: Count> Lanes for Trace<'_, Q, C> {
 
     #[inline(always)]
     fn run<F: Float>(self) -> Counters {
-        match self.origin {
-            Some(origin) => self.trace::<F, _>(Shared(origin)),
-            None => self.trace::<F, _>(PerRay),
+        match (self.order, self.origin) {
+            (Order::Stored, Some(origin)) => self.trace::<F, _, false>(Shared(origin)),
+            (Order::Stored, None) => self.trace::<F, _, false>(PerRay),
+            (Order::NearFirst, _) => self.trace::<F, _, true>(PerRay),
         }
     }
 }
 
 impl<Q: Query, C: Count> Trace<'_, Q, C> {
     #[inline(always)]
-    fn trace<F: Float, O: Origin<F>>(mut self, origin: O) -> Counters {
+    fn trace<F: Float, O: Origin<F>, const NEAR_FIRST: bool>(mut self, origin: O) -> Counters {
+        let mut stack = Vec::new();
         for (block, chunk) in lanes::chunks::<F>(self.rays.len()) {
             let ray = Rays::<F>::load(&self.rays[block], chunk);
             let mut found = Q::Found::new(&ray);
@@ -156,7 +182,12 @@ impl<Q: Query, C: Count> Trace<'_, Q, C> {
                 let splat = |bit: usize| F::Mask::splat(octant >> bit & 1 != 0);
                 let same = rest & !((x ^ splat(0)) | (y ^ splat(1)) | (z ^ splat(2)));
                 let near = Near::of_octant(octant);
-                traverse(self.bvh, self.form, &ray.only(same), origin, near, &mut found, &mut self.count);
+                let only = ray.only(same);
+                if NEAR_FIRST {
+                    ordered::traverse(self.bvh, &only, origin, near, &mut found, &mut stack, &mut self.count);
+                } else {
+                    traverse(self.bvh, self.form, &only, origin, near, &mut found, &mut self.count);
+                }
                 rest &= !same;
             }
             found.store(&mut self.results[block], chunk);
@@ -195,134 +226,30 @@ fn traverse<F: Float, O: Origin<F>, T: Found<F>, C: Count>(
         if number == 0 {
             continue;
         }
-        let first = first as usize;
-        for triangle in &bvh.triangles[first..first + number as usize] {
-            count.triangle_test();
-            if let Some(hit) = moller_trumbore::intersect(triangle, ray, origin, near) {
-                count.triangle_hit();
-                found.accept(triangle.id, hit);
-            }
-        }
+        leaf(bvh, (first, number), ray, origin, near, found, count);
         if found.complete() {
             break;
         }
     }
 }
 
-/// Closest or any.
-trait Query {
-    /// Results of a block of rays.
-    type Block: Send;
-    type Found<F: Float>: Found<F, Block = Self::Block>;
-}
-
-/// What a query knows of each lane so far.
-trait Found<F: Float> {
-    type Block;
-    fn new(ray: &Rays<F>) -> Self;
-    /// How far along its ray a hit still matters.
-    fn reach(&self) -> F;
-    fn accept(&mut self, primitive: u32, hit: Candidate<F>);
-    /// True when no further hit matters.
-    fn complete(&self) -> bool;
-    fn store(self, block: &mut Self::Block, chunk: usize);
-}
-
-struct Closest;
-impl Query for Closest {
-    type Block = HitBlock;
-    type Found<F: Float> = ClosestHit<F>;
-}
-
-struct ClosestHit<F: Float> {
-    t: F,
-    u: F,
-    v: F,
-    primitive: F::Index,
-}
-
-impl<F: Float> Found<F> for ClosestHit<F> {
-    type Block = HitBlock;
-
-    #[inline(always)]
-    fn new(ray: &Rays<F>) -> Self {
-        let zero = F::splat(0.0);
-        Self { t: ray.t_max, u: zero, v: zero, primitive: F::Index::splat(Hit::NO_PRIMITIVE) }
-    }
-
-    #[inline(always)]
-    fn reach(&self) -> F {
-        self.t
-    }
-
-    #[inline(always)]
-    fn accept(&mut self, primitive: u32, hit: Candidate<F>) {
-        let primitive = F::Index::splat(primitive);
-        // At equal distance the lower id wins, whatever order the leaves are visited in.
-        let closer = hit.t.lt(self.t) | (hit.t.eq(self.t) & primitive.lt(self.primitive));
-        let mask = hit.mask & closer;
-        self.t = F::select(mask, hit.t, self.t);
-        self.u = F::select(mask, hit.u, self.u);
-        self.v = F::select(mask, hit.v, self.v);
-        self.primitive = F::Index::select(mask, primitive, self.primitive);
-    }
-
-    #[inline(always)]
-    fn complete(&self) -> bool {
-        false
-    }
-
-    #[inline(always)]
-    fn store(self, block: &mut HitBlock, chunk: usize) {
-        let miss = self.primitive.eq(F::Index::splat(Hit::NO_PRIMITIVE));
-        F::select(miss, F::splat(Hit::MISS.t), self.t).store_block(&mut block.t, chunk);
-        self.u.store_block(&mut block.u, chunk);
-        self.v.store_block(&mut block.v, chunk);
-        self.primitive.store_block(&mut block.primitive, chunk);
-    }
-}
-
-struct Any;
-impl Query for Any {
-    type Block = u16;
-    type Found<F: Float> = Occluded<F>;
-}
-
-struct Occluded<F: Float> {
-    /// Minus infinity where something was hit: such a lane meets no box any more.
-    reach: F,
-    hit: F::Mask,
-}
-
-impl<F: Float> Found<F> for Occluded<F> {
-    type Block = u16;
-
-    #[inline(always)]
-    fn new(ray: &Rays<F>) -> Self {
-        Self { reach: ray.t_max, hit: F::Mask::splat(false) }
-    }
-
-    #[inline(always)]
-    fn reach(&self) -> F {
-        self.reach
-    }
-
-    #[inline(always)]
-    fn accept(&mut self, _primitive: u32, hit: Candidate<F>) {
-        self.reach = F::select(hit.mask, F::splat(f32::NEG_INFINITY), self.reach);
-        self.hit |= hit.mask;
-    }
-
-    #[inline(always)]
-    fn complete(&self) -> bool {
-        self.reach.eq(F::splat(f32::NEG_INFINITY)).all()
-    }
-
-    #[inline(always)]
-    fn store(self, block: &mut u16, chunk: usize) {
-        if chunk == 0 {
-            *block = 0;
+/// The triangles of a leaf: the first, and how many.
+#[inline(always)]
+fn leaf<F: Float, O: Origin<F>, T: Found<F>, C: Count>(
+    bvh: &Bvh,
+    (first, number): (u32, u32),
+    ray: &Rays<F>,
+    origin: O,
+    near: Near,
+    found: &mut T,
+    count: &mut C,
+) {
+    let first = first as usize;
+    for triangle in &bvh.triangles[first..first + number as usize] {
+        count.triangle_test();
+        if let Some(hit) = moller_trumbore::intersect(triangle, ray, origin, near) {
+            count.triangle_hit();
+            found.accept(triangle.id, hit);
         }
-        *block |= (self.hit.bitmask() as u16) << (chunk * F::LANES);
     }
 }
