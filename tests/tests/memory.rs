@@ -4,7 +4,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use tests::Random;
-use tracer::bvh::{BuildConfig, Bvh, CollapseConfig};
+use tracer::bvh::{BuildConfig, CollapseConfig, WideBvh};
 use tracer::model::{Mesh, builtin};
 use tracer::progress::Silent;
 
@@ -67,8 +67,8 @@ fn the_peak_is_no_more_than_is_said() {
         ] {
             let before = LIVE.load(Relaxed);
             PEAK.store(before, Relaxed);
-            let wide =
-                Bvh::build(&mesh, &config, &Silent).expect("a valid mesh").collapse::<8>(&CollapseConfig::default());
+            let collapse = CollapseConfig::default();
+            let wide = WideBvh::<8>::build(&mesh, &config, &collapse, &Silent).expect("a valid mesh");
             let (peak, live) = (PEAK.load(Relaxed) - before, LIVE.load(Relaxed) - before);
             let ratio = peak as f64 / config.peak_bytes(n) as f64;
             let per = |bytes: usize| bytes as f64 / n as f64;

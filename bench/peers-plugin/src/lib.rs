@@ -119,14 +119,14 @@ fn build(spec: &str, mesh: &Mesh) -> Result<Tracer, String> {
     }
     // The harness has threads of its own: a pool of one runs on the caller's. It can be built only once.
     let _ = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
-    let bvh = Bvh::build(mesh, &config, &Silent).map_err(|e| e.to_string())?;
     let tree = match kind {
-        "binary" => Tree::Binary(bvh),
-        "wide4" => Tree::Wide4(bvh.collapse(&collapse)),
-        "wide8" => Tree::Wide8(bvh.collapse(&collapse)),
-        "wide16" => Tree::Wide16(bvh.collapse(&collapse)),
+        "binary" => Bvh::build(mesh, &config, &Silent).map(Tree::Binary),
+        "wide4" => WideBvh::build(mesh, &config, &collapse, &Silent).map(Tree::Wide4),
+        "wide8" => WideBvh::build(mesh, &config, &collapse, &Silent).map(Tree::Wide8),
+        "wide16" => WideBvh::build(mesh, &config, &collapse, &Silent).map(Tree::Wide16),
         _ => return Err(format!("unknown tree '{kind}'")),
     };
+    let tree = tree.map_err(|e| e.to_string())?;
     Ok(Tracer { tree, level, single, limits })
 }
 

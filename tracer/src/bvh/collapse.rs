@@ -3,7 +3,8 @@
 
 use super::wide::GROUP;
 use super::{Bvh, Child, Node, WideBvh, WideNode};
-use crate::geometry::{Aabb, TriangleGroup};
+use crate::geometry::{Aabb, Triangle, TriangleGroup};
+use rayon::prelude::*;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -43,89 +44,102 @@ impl Bvh {
     /// The wide tree with the least cost that leaves out nodes of this one.
     #[must_use]
     pub fn collapse<const N: usize>(&self, config: &CollapseConfig) -> WideBvh<N> {
-        const { assert!(N == 4 || N == 8 || N == 16, "wide nodes have 4, 8 or 16 children") }
-        let mut wide = WideBvh { nodes: Vec::new(), groups: Vec::new(), triangles: self.triangles.len(), depth: 0 };
-        if self.nodes.is_empty() {
-            return wide;
-        }
-        let nodes = &*self.in_twos();
-        let best = best::<N>(nodes, config);
-        wide.nodes.push(WideNode::EMPTY);
-        let emit = Emit { nodes, best: &best };
-        // Even when the whole tree is one leaf there is a node above it.
-        let mut todo = vec![(0, 0, 1)];
-        let mut roots = Vec::with_capacity(N);
-        let mut leaves = Leaves::default();
-        while let Some((at, binary, depth)) = todo.pop() {
-            wide.depth = wide.depth.max(depth);
-            roots.clear();
-            if best[binary].fate == Fate::Leaf {
-                roots.push(binary);
-            } else {
-                emit.open(binary, N, &mut roots);
-            }
-            for (i, &root) in roots.iter().enumerate() {
-                let child = if best[root].fate == Fate::Leaf {
-                    leaves.add(best[root].triangles)
-                } else {
-                    wide.nodes.push(WideNode::EMPTY);
-                    todo.push((wide.nodes.len() - 1, root, depth + 1));
-                    Child::node(wide.nodes.len() - 1)
-                };
-                wide.nodes[at].set(i, &nodes[root].bounds(), child);
-            }
-        }
-        // Before there are groups, which take as much.
-        drop(best);
-        wide.nodes.shrink_to_fit();
-        wide.groups.reserve_exact(leaves.groups);
-        for (first, number) in leaves.ranges {
-            let triangles = &self.triangles[first as usize..][..number as usize];
-            wide.groups.extend(triangles.chunks(GROUP).map(TriangleGroup::new));
-        }
-        wide
+        collapse(Cow::Borrowed(&self.nodes), self.triangles.len(), &|place| self.triangles[place], config)
     }
+}
 
-    /// The nodes, with at most two children each: where there are more ([insertion](super::build::insertion) makes such), all but the
-    /// first get a node of their own above them.
-    fn in_twos(&self) -> Cow<'_, [Node]> {
-        // The box of the new node, and where the subtree ends, by the node before which it comes.
-        let mut new = BTreeMap::new();
-        let mut siblings = Vec::new();
-        for (i, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.triangles().1 == 0) {
-            let end = node.skip() as usize;
-            siblings.clear();
-            let mut child = i + 1;
-            while child < end {
-                siblings.push(child);
-                child = self.nodes[child].skip() as usize;
-            }
-            let mut bounds = Aabb::EMPTY;
-            for (k, &child) in siblings.iter().enumerate().skip(1).rev() {
-                bounds = bounds.union(&self.nodes[child].bounds());
-                if k + 1 < siblings.len() {
-                    new.insert(child, (bounds, end));
-                }
-            }
-        }
-        if new.is_empty() {
-            return Cow::Borrowed(&self.nodes);
-        }
-        let mut place = Vec::with_capacity(self.nodes.len() + 1);
-        let mut number = 0;
-        for i in 0..=self.nodes.len() {
-            place.push(number);
-            number += 1 + u32::from(new.contains_key(&i));
-        }
-        let mut nodes = Vec::with_capacity(self.nodes.len() + new.len());
-        for (i, node) in self.nodes.iter().enumerate() {
-            if let Some((bounds, end)) = new.get(&i) {
-                nodes.push(Node::inner(bounds, place[*end]));
-            }
-            nodes.push(node.with_skip(place[node.skip() as usize]));
-        }
-        Cow::Owned(nodes)
+/// The wide tree made of these nodes, over `number` triangles in the order of the leaves.
+pub(super) fn collapse<const N: usize>(
+    nodes: Cow<[Node]>,
+    number: usize,
+    triangle: &(impl Fn(usize) -> Triangle + Sync),
+    config: &CollapseConfig,
+) -> WideBvh<N> {
+    const { assert!(N == 4 || N == 8 || N == 16, "wide nodes have 4, 8 or 16 children") }
+    let mut wide = WideBvh { nodes: Vec::new(), groups: Vec::new(), triangles: number, depth: 0 };
+    if nodes.is_empty() {
+        return wide;
     }
+    let nodes = in_twos(nodes);
+    let best = best::<N>(&nodes, config);
+    wide.nodes.push(WideNode::EMPTY);
+    let emit = Emit { nodes: &nodes, best: &best };
+    // Even when the whole tree is one leaf there is a node above it.
+    let mut todo = vec![(0, 0, 1)];
+    let mut roots = Vec::with_capacity(N);
+    let mut leaves = Leaves::default();
+    while let Some((at, binary, depth)) = todo.pop() {
+        wide.depth = wide.depth.max(depth);
+        roots.clear();
+        if best[binary].fate == Fate::Leaf {
+            roots.push(binary);
+        } else {
+            emit.open(binary, N, &mut roots);
+        }
+        for (i, &root) in roots.iter().enumerate() {
+            let child = if best[root].fate == Fate::Leaf {
+                leaves.add(best[root].triangles)
+            } else {
+                wide.nodes.push(WideNode::EMPTY);
+                todo.push((wide.nodes.len() - 1, root, depth + 1));
+                Child::node(wide.nodes.len() - 1)
+            };
+            wide.nodes[at].set(i, &nodes[root].bounds(), child);
+        }
+    }
+    // Before there are groups, which take as much.
+    drop((best, nodes));
+    wide.nodes.shrink_to_fit();
+    let group = |(first, number): (u32, u32)| {
+        let mut group = TriangleGroup::EMPTY;
+        for lane in 0..number as usize {
+            group.set(lane, &triangle(first as usize + lane));
+        }
+        group
+    };
+    wide.groups = leaves.groups.into_par_iter().map(group).collect();
+    wide
+}
+
+/// The nodes, with at most two children each: where there are more ([insertion](super::build::insertion) makes such), all but the
+/// first get a node of their own above them.
+fn in_twos(nodes: Cow<[Node]>) -> Cow<[Node]> {
+    // The box of the new node, and where the subtree ends, by the node before which it comes.
+    let mut new = BTreeMap::new();
+    let mut siblings = Vec::new();
+    for (i, node) in nodes.iter().enumerate().filter(|(_, node)| node.triangles().1 == 0) {
+        let end = node.skip() as usize;
+        siblings.clear();
+        let mut child = i + 1;
+        while child < end {
+            siblings.push(child);
+            child = nodes[child].skip() as usize;
+        }
+        let mut bounds = Aabb::EMPTY;
+        for (k, &child) in siblings.iter().enumerate().skip(1).rev() {
+            bounds = bounds.union(&nodes[child].bounds());
+            if k + 1 < siblings.len() {
+                new.insert(child, (bounds, end));
+            }
+        }
+    }
+    if new.is_empty() {
+        return nodes;
+    }
+    let mut place = Vec::with_capacity(nodes.len() + 1);
+    let mut number = 0;
+    for i in 0..=nodes.len() {
+        place.push(number);
+        number += 1 + u32::from(new.contains_key(&i));
+    }
+    let mut twos = Vec::with_capacity(nodes.len() + new.len());
+    for (i, node) in nodes.iter().enumerate() {
+        if let Some((bounds, end)) = new.get(&i) {
+            twos.push(Node::inner(bounds, place[*end]));
+        }
+        twos.push(node.with_skip(place[node.skip() as usize]));
+    }
+    Cow::Owned(twos)
 }
 
 fn best<const N: usize>(nodes: &[Node], config: &CollapseConfig) -> Vec<Best<N>> {
@@ -198,21 +212,19 @@ impl<const N: usize> Emit<'_, N> {
     }
 }
 
-/// Leaves whose triangles are not yet in groups.
+/// Leaves whose triangles are not yet put into groups.
 #[derive(Default)]
 struct Leaves {
-    /// First triangle and number of triangles of each.
-    ranges: Vec<(u32, u32)>,
-    /// Number of groups.
-    groups: usize,
+    /// First triangle and number of triangles of each group.
+    groups: Vec<(u32, u32)>,
 }
 
 impl Leaves {
-    fn add(&mut self, range: (u32, u32)) -> Child {
-        let number = (range.1 as usize).div_ceil(GROUP);
-        self.ranges.push(range);
-        self.groups += number;
-        Child::leaf(self.groups - number, number)
+    fn add(&mut self, (first, number): (u32, u32)) -> Child {
+        let begin = self.groups.len();
+        let places = (first..first + number).step_by(GROUP);
+        self.groups.extend(places.map(|place| (place, (first + number - place).min(GROUP as u32))));
+        Child::leaf(begin, self.groups.len() - begin)
     }
 }
 

@@ -89,7 +89,9 @@ impl Aabb {
     #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        self.min.iter().chain(&self.max).all(|x| x.is_finite())
+        // Zero times a number is zero unless that is infinite or none: no branches.
+        let zero = zip(zip(self.min, &[0.0; 3], |x, y| x * y), &self.max, |x, y| x + y * 0.0);
+        zero[0] + zero[1] + zero[2] == 0.0
     }
 }
 

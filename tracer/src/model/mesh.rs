@@ -30,7 +30,8 @@ impl Mesh {
     #[inline]
     #[must_use]
     pub fn triangle(&self, i: usize) -> [[f32; 3]; 3] {
-        self.triangles[i].map(|v| self.positions[v as usize])
+        let [a, b, c] = self.triangles[i];
+        [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
     /// Material index of a triangle.

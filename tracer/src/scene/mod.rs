@@ -9,7 +9,7 @@ pub(crate) mod random;
 pub(crate) use choose::one_for_each;
 
 use crate::Error;
-use crate::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
+use crate::bvh::{BuildConfig, CollapseConfig, WideBvh};
 use crate::geometry::{Aabb, Hit, HitBatch, Ray, RayBatch, Triangle};
 use crate::method::{Auto, BitVec, Context, Method, Single, Vertices, Watertight};
 use crate::model::Mesh;
@@ -318,8 +318,8 @@ impl<'a> SceneBuilder<'a> {
             all.triangles.extend(mesh.triangles.iter().map(|t| t.map(|v| v + base)));
             all.positions.extend(mesh.positions);
         }
-        let build = if self.watertight { Bvh::build_watertight } else { Bvh::build };
-        let bvh = build(&all, &self.config, self.progress)?.collapse(&CollapseConfig::default());
+        let build = if self.watertight { WideBvh::build_watertight } else { WideBvh::build };
+        let bvh = build(&all, &self.config, &CollapseConfig::default(), self.progress)?;
         let vertices = self.watertight.then(|| Vertices::new(&bvh, &all));
         Ok(Scene { bvh, level: self.level, bounds: all.bounds(), first, masks: self.masks, vertices })
     }

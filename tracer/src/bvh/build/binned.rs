@@ -1,7 +1,7 @@
 //! The surface area heuristic over bins, top down (Wald 2007, "On fast construction of SAH-based bounding volume hierarchies"), on all
 //! three axes, and over all primitives where few are left.
 
-use super::bins::Binning;
+use super::bins::{Binning, Bins};
 use super::part::Part;
 use super::primitive::{Box4, Primitive, centers, union};
 use super::sah::Split;
@@ -88,9 +88,10 @@ struct Builder<'a> {
 impl Builder<'_> {
     /// Builds large subtrees in parallel, smaller ones each in one piece.
     fn top(&self, mut range: Range) -> Result<Part, Error> {
+        let mut bins = Bins::EMPTY;
         if range.src.len() > PIECE {
             let bounds = range.bounds.aabb();
-            match self.split(range) {
+            match self.split(range, &mut bins) {
                 Ok([a, b]) => {
                     let (a, b) = rayon::join(|| self.top(a), || self.top(b));
                     let (a, b) = (a?, b?);
@@ -102,19 +103,19 @@ impl Builder<'_> {
         self.progress.check()?;
         let n = range.src.len();
         let mut nodes = Vec::with_capacity(n);
-        self.subtree(range, &mut nodes);
+        self.subtree(range, &mut nodes, &mut bins);
         self.progress.advance(n as u64);
         Ok(Part::Subtree(nodes))
     }
 
     /// Appends the nodes of a subtree. Recursion is no deeper than [`MAX_DEPTH`].
-    fn subtree(&self, range: Range, nodes: &mut Vec<Node>) {
+    fn subtree(&self, range: Range, nodes: &mut Vec<Node>, bins: &mut Bins) {
         let (at, bounds) = (nodes.len(), range.bounds.aabb());
         nodes.push(Node::inner(&bounds, 0));
-        match self.split(range) {
+        match self.split(range, bins) {
             Ok([a, b]) => {
-                self.subtree(a, nodes);
-                self.subtree(b, nodes);
+                self.subtree(a, nodes, bins);
+                self.subtree(b, nodes, bins);
                 nodes[at] = nodes[at].with_skip(nodes.len() as u32);
             }
             Err(leaf) => {
@@ -125,21 +126,26 @@ impl Builder<'_> {
     }
 
     /// The children of an inner node, or the range itself when it shall be a leaf.
-    fn split<'a>(&self, range: Range<'a>) -> Result<[Range<'a>; 2], Range<'a>> {
+    fn split<'a>(&self, range: Range<'a>, bins: &mut Bins) -> Result<[Range<'a>; 2], Range<'a>> {
         let n = range.src.len();
-        if n == 1 {
-            return Err(range);
+        let area = range.bounds.half_area();
+        // What a split costs beside its two sides, and what a leaf costs.
+        let (as_node, as_leaf) = (2.0 * self.config.traversal_cost * area, area * n as f32);
+        if n <= self.config.max_leaf as usize {
+            // No sides cost less than their primitives one by one. Costs may be NaN, of coordinates so large that areas overflow.
+            let least: f32 = range.src.iter().map(|p| p.0.half_area()).sum();
+            let may_be_worth_it = least + as_node < as_leaf;
+            if !may_be_worth_it {
+                return Err(range);
+            }
         }
-        let binning = (n > sweep::MAX).then(|| Binning::new(range.src));
+        let binning = (n > sweep::MAX).then(|| Binning::new(range.src, bins));
         let split = match &binning {
             Some(binning) => binning.best(),
             None => sweep::best(range.src),
         };
         if n <= self.config.max_leaf as usize {
-            let area = range.bounds.half_area();
-            let cost = split.map_or(f32::INFINITY, |s| s.cost) + 2.0 * self.config.traversal_cost * area;
-            // Costs may be NaN, of coordinates so large that areas overflow.
-            let is_worth_it = cost < area * n as f32;
+            let is_worth_it = split.map_or(f32::INFINITY, |s| s.cost) + as_node < as_leaf;
             if !is_worth_it {
                 return Err(range);
             }

@@ -3,9 +3,11 @@
 use super::primitive::Primitive;
 use super::{Tree, binned};
 use crate::Error;
-use crate::bvh::{Bvh, CollapseConfig, Node, WideBvh};
+use crate::bvh::collapse::collapse;
+use crate::bvh::{CollapseConfig, Node, WideBvh};
 use crate::geometry::{Aabb, Triangle};
 use crate::progress::Silent;
+use std::borrow::Cow;
 
 impl WideBvh<8> {
     /// Over finite boxes; what is in them is told by the ids in the groups, which are places in `boxes`. Each is alone in its leaf.
@@ -29,7 +31,7 @@ impl WideBvh<8> {
             false => binned::build(primitives, &config, &Silent)?,
         };
         // Nothing but the ids of these triangles is looked at.
-        let triangles = ids.into_iter().map(|id| Triangle::new([[0.0; 3]; 3], id, 0)).collect();
-        Ok(Bvh { nodes, triangles }.collapse(&CollapseConfig { node_cost: 1.0, max_leaf: 1 }))
+        let triangle = |place: usize| Triangle::new([[0.0; 3]; 3], ids[place], 0);
+        Ok(collapse(Cow::Owned(nodes), ids.len(), &triangle, &CollapseConfig { node_cost: 1.0, max_leaf: 1 }))
     }
 }

@@ -31,13 +31,15 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 
-use super::{Bvh, Node};
+use super::collapse::collapse;
+use super::{Bvh, CollapseConfig, Node, WideBvh};
 use crate::Error;
 use crate::geometry::Triangle;
 use crate::model::Mesh;
 use crate::progress::Progress;
 use primitive::Primitive;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Which builder makes the tree, and its knobs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,12 +86,12 @@ impl BuildConfig {
         Self::Insertion(insertion::Config { seed: Some(seed), ..Default::default() })
     }
 
-    /// How many bytes there are at once, at most, while a [`WideBvh`](super::WideBvh) of eight children is made of this many
+    /// How many bytes there are at once, at most, while [`WideBvh::build`] makes nodes of eight children over this many
     /// triangles, the mesh not counted: the lists of the builder, or the binary tree with what collapsing it needs, whichever is more.
     ///
     /// How many nodes there will be only building tells: this is for triangles that lie far from each other, which make the most. Of
     /// surfaces it takes 0.55 to 0.75 times as much ([`BuildConfig::high`]: 0.9). What remains, nodes and groups, is less than half of it:
-    /// [`WideBvh::bytes`](super::WideBvh::bytes).
+    /// [`WideBvh::bytes`].
     #[must_use]
     pub fn peak_bytes(&self, triangles: usize) -> u64 {
         // Bytes for each triangle, with one node for each; two where leaves are small.
@@ -131,38 +133,78 @@ impl Bvh {
     /// # Errors
     /// [`Error::Geometry`] as [`Mesh::validate`] has it, [`Error::Cancelled`] when `progress` says so.
     pub fn build(mesh: &Mesh, config: &BuildConfig, progress: &dyn Progress) -> Result<Self, Error> {
-        Self::build_of(mesh, primitive::primitives, config, progress)
-    }
-
-    /// As [`Bvh::build`], but slivers are left out no more than other triangles, and boxes hold the vertices as they are given: what the
-    /// watertight test needs.
-    pub(crate) fn build_watertight(mesh: &Mesh, config: &BuildConfig, progress: &dyn Progress) -> Result<Self, Error> {
-        Self::build_of(mesh, primitive::slivers_too, config, progress)
-    }
-
-    fn build_of(
-        mesh: &Mesh,
-        primitives: fn(&Mesh) -> Vec<Primitive>,
-        config: &BuildConfig,
-        progress: &dyn Progress,
-    ) -> Result<Self, Error> {
-        mesh.validate()?;
-        let total = mesh.triangles.len();
-        progress.stage("build", total as u64);
-        progress.check()?;
-        let primitives = primitives(mesh);
-        progress.advance((total - primitives.len()) as u64);
-        let Tree { nodes, ids } = match config {
-            _ if primitives.is_empty() => Tree { nodes: Vec::new(), ids: Vec::new() },
-            BuildConfig::Binned(config) => binned::build(primitives, config, progress)?,
-            BuildConfig::Linear(config) => linear::build(primitives, config, progress)?,
-            BuildConfig::Reinsertion(config) => reinsertion::build(primitives, config, progress)?,
-            BuildConfig::Insertion(config) => insertion::build(primitives, config, progress)?,
-        };
-        progress.check()?;
+        let Tree { nodes, ids } = tree(mesh, primitive::primitives, config, progress)?;
         let triangles = ids.into_par_iter().map(|id| triangle(mesh, id)).collect();
         Ok(Self { nodes, triangles })
     }
+}
+
+impl<const N: usize> WideBvh<N> {
+    /// What [`Bvh::build`] and [`Bvh::collapse`] make, in less time and memory.
+    ///
+    /// ```
+    /// use tracer::bvh::{BuildConfig, CollapseConfig, WideBvh};
+    /// use tracer::{model::Model, progress::Silent};
+    ///
+    /// # fn main() -> Result<(), tracer::Error> {
+    /// let (model, _warnings) = Model::open("balls:1", &Silent)?;
+    /// let bvh = WideBvh::<8>::build(&model.mesh, &BuildConfig::default(), &CollapseConfig::default(), &Silent)?;
+    /// assert!(bvh.bytes() < 80 * bvh.triangles);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Bvh::build`].
+    pub fn build(
+        mesh: &Mesh,
+        config: &BuildConfig,
+        collapse: &CollapseConfig,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        Ok(tree(mesh, primitive::primitives, config, progress)?.collapse(mesh, collapse))
+    }
+
+    /// As [`WideBvh::build`], but slivers are left out no more than other triangles, and boxes hold the vertices as they are given:
+    /// what the watertight test needs.
+    pub(crate) fn build_watertight(
+        mesh: &Mesh,
+        config: &BuildConfig,
+        collapse: &CollapseConfig,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        Ok(tree(mesh, primitive::slivers_too, config, progress)?.collapse(mesh, collapse))
+    }
+}
+
+impl Tree {
+    fn collapse<const N: usize>(self, mesh: &Mesh, config: &CollapseConfig) -> WideBvh<N> {
+        let Self { nodes, ids } = self;
+        collapse(Cow::Owned(nodes), ids.len(), &|place| triangle(mesh, ids[place]), config)
+    }
+}
+
+fn tree(
+    mesh: &Mesh,
+    primitives: fn(&Mesh) -> Vec<Primitive>,
+    config: &BuildConfig,
+    progress: &dyn Progress,
+) -> Result<Tree, Error> {
+    mesh.validate()?;
+    let total = mesh.triangles.len();
+    progress.stage("build", total as u64);
+    progress.check()?;
+    let primitives = primitives(mesh);
+    progress.advance((total - primitives.len()) as u64);
+    let tree = match config {
+        _ if primitives.is_empty() => Tree { nodes: Vec::new(), ids: Vec::new() },
+        BuildConfig::Binned(config) => binned::build(primitives, config, progress)?,
+        BuildConfig::Linear(config) => linear::build(primitives, config, progress)?,
+        BuildConfig::Reinsertion(config) => reinsertion::build(primitives, config, progress)?,
+        BuildConfig::Insertion(config) => insertion::build(primitives, config, progress)?,
+    };
+    progress.check()?;
+    Ok(tree)
 }
 
 /// The mesh's triangle `id`, as it is stored.
