@@ -21,7 +21,8 @@ pub struct TriangleGroup<const W: usize> {
 }
 
 impl<const W: usize> TriangleGroup<W> {
-    pub(crate) const EMPTY: Self = Self { v0: [[0.0; W]; 3], e1: [[0.0; W]; 3], e2: [[0.0; W]; 3], id: [Hit::NO_PRIMITIVE; W] };
+    pub(crate) const EMPTY: Self =
+        Self { v0: [[0.0; W]; 3], e1: [[0.0; W]; 3], e2: [[0.0; W]; 3], id: [Hit::NO_PRIMITIVE; W] };
 
     /// Of at most `W` triangles.
     ///

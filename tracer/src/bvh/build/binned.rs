@@ -3,12 +3,14 @@
 
 use super::bins::{Binning, Bins};
 use super::part::Part;
-use super::primitive::{Box4, Primitive, centers, union};
+use super::primitive::{Box8, Primitive, centers, union};
 use super::sah::Split;
-use super::{MAX_DEPTH, PIECE, Tree, sweep};
+use super::sweep::{self, Sweep};
+use super::{MAX_DEPTH, PIECE, Tree};
 use crate::Error;
 use crate::bvh::Node;
 use crate::progress::Progress;
+use simd::Level;
 
 /// Knobs of the binned builder.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +45,7 @@ pub(super) fn build(mut primitives: Vec<Primitive>, config: &Config, progress: &
     let bounds = union(&primitives);
     let range = Range { src: &mut primitives, dst: &mut scratch, ids: &mut ids, first: 0, depth: 0, bounds };
     let config = Config { max_leaf: config.max_leaf.clamp(1, Node::MAX_LEAF), ..*config };
-    let top = Builder { config, progress }.top(range)?;
+    let top = Builder { level: Level::best(), config, progress }.top(range)?;
     // Before the nodes are put together, which takes as much.
     drop((primitives, scratch));
     Ok(Tree { nodes: top.into_nodes(), ids })
@@ -59,7 +61,7 @@ struct Range<'a> {
     /// Place of `ids` in the whole array.
     first: usize,
     depth: u32,
-    bounds: Box4,
+    bounds: Box8,
 }
 
 impl<'a> Range<'a> {
@@ -70,7 +72,7 @@ impl<'a> Range<'a> {
     }
 
     /// The first `n` primitives and the rest, with their boxes.
-    fn split_at(self, n: usize, [a, b]: [Box4; 2]) -> [Self; 2] {
+    fn split_at(self, n: usize, [a, b]: [Box8; 2]) -> [Self; 2] {
         let depth = self.depth + 1;
         let (src, dst, ids) = (self.src.split_at_mut(n), self.dst.split_at_mut(n), self.ids.split_at_mut(n));
         [
@@ -80,7 +82,37 @@ impl<'a> Range<'a> {
     }
 }
 
+/// How to split a range.
+enum Plan<'a> {
+    Bins(Binning<'a>, Split),
+    Order(Sweep),
+    /// No plane between bins or centers has primitives on both sides, or all cost more than numbers can tell.
+    Halves,
+}
+
+impl<'a> Plan<'a> {
+    fn new(level: Level, primitives: &[Primitive], bins: &'a mut Bins) -> Self {
+        if primitives.len() <= sweep::MAX {
+            return sweep::best(level, primitives).map_or(Self::Halves, Self::Order);
+        }
+        let binning = Binning::new(level, primitives, bins);
+        match binning.best {
+            Some(split) => Self::Bins(binning, split),
+            None => Self::Halves,
+        }
+    }
+
+    fn cost(&self) -> f32 {
+        match self {
+            Self::Bins(_, split) | Self::Order(Sweep { split, .. }) => split.cost,
+            Self::Halves => f32::INFINITY,
+        }
+    }
+}
+
 struct Builder<'a> {
+    /// The tree does not depend on it.
+    level: Level,
     config: Config,
     progress: &'a dyn Progress,
 }
@@ -139,24 +171,19 @@ impl Builder<'_> {
                 return Err(range);
             }
         }
-        let binning = (n > sweep::MAX).then(|| Binning::new(range.src, bins));
-        let split = match &binning {
-            Some(binning) => binning.best(),
-            None => sweep::best(range.src),
-        };
+        let plan = Plan::new(self.level, range.src, bins);
         if n <= self.config.max_leaf as usize {
-            let is_worth_it = split.map_or(f32::INFINITY, |s| s.cost) + as_node < as_leaf;
+            let is_worth_it = plan.cost() + as_node < as_leaf;
             if !is_worth_it {
                 return Err(range);
             }
         }
         let balanced_levels = usize::BITS - (n - 1).leading_zeros();
-        Ok(match split {
-            Some(split) if range.depth + balanced_levels < MAX_DEPTH => match binning {
-                Some(binning) => self.split_by_bins(range, &split, &binning),
-                None => self.split_by_rank(range, &split),
-            },
-            _ => self.split_in_halves(range),
+        Ok(match plan {
+            _ if range.depth + balanced_levels >= MAX_DEPTH => self.split_in_halves(range),
+            Plan::Bins(binning, split) => self.split_by_bins(range, &split, &binning),
+            Plan::Order(sweep) => self.split_by_rank(range, &sweep),
+            Plan::Halves => self.split_in_halves(range),
         })
     }
 
@@ -175,18 +202,17 @@ impl Builder<'_> {
         range.moved().split_at(n, sides)
     }
 
-    fn split_by_rank<'a>(&self, range: Range<'a>, split: &Split) -> [Range<'a>; 2] {
-        for (p, rank) in range.src.iter().zip(sweep::ranks(range.src, split.axis)) {
-            range.dst[rank] = *p;
+    fn split_by_rank<'a>(&self, range: Range<'a>, sweep: &Sweep) -> [Range<'a>; 2] {
+        for (p, rank) in range.src.iter().zip(sweep.ranks) {
+            range.dst[rank as usize] = *p;
         }
-        self.split_at(range.moved(), split.below)
+        self.split_at(range.moved(), sweep.split.below)
     }
 
     /// By the centers along the axis on which they extend most.
     fn split_in_halves<'a>(&self, range: Range<'a>) -> [Range<'a>; 2] {
         let centers = centers(range.src);
-        let extent = |i: usize| centers.max[i] - centers.min[i];
-        let axis = (1..3).fold(0, |a, b| if extent(b) > extent(a) { b } else { a });
+        let axis = (1..3).fold(0, |a, b| if centers.extent(b) > centers.extent(a) { b } else { a });
         let n = range.src.len() / 2;
         range.src.select_nth_unstable_by(n, |a, b| a.center(axis).total_cmp(&b.center(axis)).then(a.id().cmp(&b.id())));
         self.split_at(range, n)
@@ -205,7 +231,7 @@ impl Builder<'_> {
     }
 
     /// Whether the upper side shall be the first child.
-    fn shall_swap(&self, [below, above]: &[Box4; 2]) -> bool {
+    fn shall_swap(&self, [below, above]: &[Box8; 2]) -> bool {
         self.config.child_order == ChildOrder::LargerFirst && above.half_area() > below.half_area()
     }
 }

@@ -3,7 +3,7 @@
 //! is not the same in all. The fastest of the builders, most often with the worst trees.
 
 use super::part::Part;
-use super::primitive::{Box4, Primitive, centers};
+use super::primitive::{Box8, Primitive, centers};
 use super::{MAX_DEPTH, PIECE, Tree};
 use crate::Error;
 use crate::bvh::Node;
@@ -51,18 +51,18 @@ pub(super) fn build(primitives: Vec<Primitive>, config: &Config, progress: &dyn 
 
 /// Codes of the centers and places of the primitives, sorted: equal codes by their place.
 fn keys(primitives: &[Primitive]) -> Vec<(u64, u32)> {
-    let all = primitives.par_chunks(PIECE).map(centers).reduce(|| Box4::EMPTY, |a, b| a.union(&b));
+    let all = primitives.par_chunks(PIECE).map(centers).reduce(|| Box8::EMPTY, |a, b| a.union(&b));
     // The same scale on all axes, so that cells are cubes and long sides are halved first.
-    let extent = (0..3).map(|axis| all.max[axis] - all.min[axis]).fold(0.0, f32::max);
+    let extent = (0..3).map(|axis| all.extent(axis)).fold(0.0, f32::max);
     let scale = ((1 << BITS) as f32 - 1.0) / extent;
     let code = |p: &Primitive| {
         // Twice as large as the triangle, as centers are.
-        let size = 2.0 * p.0.aabb().extent().into_iter().fold(0.0, f32::max);
+        let size = 2.0 * (0..3).map(|axis| p.0.extent(axis)).fold(0.0, f32::max);
         let is_small = size < LARGE * extent;
         let mut code = u64::from(is_small) << (3 * BITS);
         for axis in 0..3 {
             // Where centers have no extent, or not a finite one, this is NaN or 0, which become 0.
-            code |= spread(((p.center(axis) - all.min[axis]) * scale) as u32) << (2 - axis);
+            code |= spread(((p.center(axis) - all.0[axis]) * scale) as u32) << (2 - axis);
         }
         code
     };
@@ -101,7 +101,7 @@ impl Range {
 }
 
 /// What a subtree adds to its parents: its box, and its cost times half the area of the root.
-type Summary = (Box4, f32);
+type Summary = (Box8, f32);
 
 struct Builder<'a> {
     primitives: &'a [Primitive],
@@ -135,7 +135,7 @@ impl Builder<'_> {
             nodes.push(Node::leaf(&bounds.aabb(), at as u32 + 1, range.first as u32, 1));
             return (bounds, bounds.half_area());
         }
-        nodes.push(Node::inner(&Box4::EMPTY.aabb(), 0));
+        nodes.push(Node::inner(&Box8::EMPTY.aabb(), 0));
         let [a, b] = self.split(range);
         let (a_box, a_cost) = self.subtree(a, nodes);
         let (b_box, b_cost) = self.subtree(b, nodes);

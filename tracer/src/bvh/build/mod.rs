@@ -90,14 +90,14 @@ impl BuildConfig {
     /// triangles, the mesh not counted: the lists of the builder, or the binary tree with what collapsing it needs, whichever is more.
     ///
     /// How many nodes there will be only building tells: this is for triangles that lie far from each other, which make the most. Of
-    /// surfaces it takes 0.55 to 0.75 times as much ([`BuildConfig::high`]: 0.9). What remains, nodes and groups, is less than half of it:
+    /// surfaces it takes 0.6 to 0.75 times as much ([`BuildConfig::high`]: 0.9). What remains, nodes and groups, is about half of it:
     /// [`WideBvh::bytes`].
     #[must_use]
     pub fn peak_bytes(&self, triangles: usize) -> u64 {
         // Bytes for each triangle, with one node for each; two where leaves are small.
         let nodes = |max_leaf| if max_leaf < 4 { 2 } else { 1 };
-        // Triangles; nodes, with costs of collapsing; wide nodes.
-        let collapse = |nodes: u64| 48 + nodes * (32 + 20) + 100;
+        // Ids and groups; nodes, with costs of collapsing; wide nodes.
+        let collapse = |nodes: u64| 8 + nodes * (32 + 20) + 80;
         let per_triangle = match self {
             Self::Linear(config) => collapse(nodes(config.max_leaf)),
             Self::Binned(config) => collapse(nodes(config.max_leaf)),

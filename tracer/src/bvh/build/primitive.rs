@@ -1,76 +1,106 @@
-//! What builders sort: a triangle's box and its id, in two 16-byte blocks that the compiler turns into vectors.
+//! What builders sort: a triangle's box and its id, in eight lanes.
 
 use super::triangle;
 use crate::geometry::Aabb;
-use crate::geometry::aabb::{max, min, zip};
+use crate::geometry::aabb::{min, zip};
 use crate::model::Mesh;
 use rayon::prelude::*;
+use simd::{Halves, Simd, Vector};
 
-/// A box padded to four lanes. The fourth means nothing to a box, but is always a normal number (denormals are slow).
+/// A box as its lower corner and, from lane 4 on, the negative of its upper one, so that a union is one minimum. Lanes 3 and 7 mean
+/// nothing to a box, but are always normal numbers (denormals are slow).
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
-pub(super) struct Box4 {
-    pub(super) min: [f32; 4],
-    pub(super) max: [f32; 4],
-}
+pub(super) struct Box8(pub(super) [f32; 8]);
 
-impl Box4 {
-    pub(super) const EMPTY: Self = Self { min: [f32::INFINITY; 4], max: [f32::NEG_INFINITY; 4] };
+impl Box8 {
+    pub(super) const EMPTY: Self = Self([f32::INFINITY; 8]);
+
+    /// With a number for lanes 3 and 7.
+    pub(super) fn new(b: &Aabb, tag: f32) -> Self {
+        Self([b.min[0], b.min[1], b.min[2], tag, -b.max[0], -b.max[1], -b.max[2], tag])
+    }
+
+    #[inline(always)]
+    pub(super) fn load<S: Simd>(&self) -> S::Float8 {
+        S::Float8::load(&self.0)
+    }
+
+    #[inline(always)]
+    pub(super) fn store<S: Simd>(&mut self, b: S::Float8) {
+        b.store(&mut self.0);
+    }
 
     #[inline(always)]
     pub(super) fn union(&self, b: &Self) -> Self {
-        Self { min: zip(self.min, &b.min, min), max: zip(self.max, &b.max, max) }
+        Self(zip(self.0, &b.0, min))
+    }
+
+    /// Length along an axis.
+    #[inline(always)]
+    pub(super) fn extent(&self, axis: usize) -> f32 {
+        -self.0[4 + axis] - self.0[axis]
     }
 
     /// As [`Aabb::half_area`], but infinite for an empty box.
     #[inline(always)]
     pub(super) fn half_area(&self) -> f32 {
-        let e = zip(self.max, &self.min, |a, b| a - b);
-        e[0] * e[1] + e[1] * e[2] + e[2] * e[0]
+        let (x, y, z) = (self.extent(0), self.extent(1), self.extent(2));
+        x * y + y * z + z * x
     }
 
     pub(super) fn aabb(&self) -> Aabb {
-        let xyz = |[x, y, z, _]: [f32; 4]| [x, y, z];
-        Aabb { min: xyz(self.min), max: xyz(self.max) }
+        let [x, y, z, _, to_x, to_y, to_z, _] = self.0;
+        Aabb { min: [x, y, z], max: [-to_x, -to_y, -to_z] }
     }
 }
 
-/// A triangle's box, with its id in the fourth lane of `min`.
+/// A triangle's box, with its id in lanes 3 and 7.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Primitive(pub(super) Box4);
+pub(super) struct Primitive(pub(super) Box8);
 
 impl Primitive {
     /// Added to the id, makes it the bits of a normal float: ids are below 2^28.
     const TAG: u32 = 0x4000_0000;
 
     pub(super) fn new(b: &Aabb, id: u32) -> Self {
-        let pad = |[x, y, z]: [f32; 3]| [x, y, z, f32::from_bits(id + Self::TAG)];
-        Self(Box4 { min: pad(b.min), max: pad(b.max) })
+        Self(Box8::new(b, f32::from_bits(id + Self::TAG)))
     }
 
     #[inline(always)]
     pub(super) fn id(&self) -> u32 {
-        self.0.min[3].to_bits() - Self::TAG
+        self.0.0[3].to_bits() - Self::TAG
     }
 
     /// Twice the middle of the box along an axis.
     #[inline(always)]
     pub(super) fn center(&self, axis: usize) -> f32 {
-        self.0.min[axis] + self.0.max[axis]
+        self.0.0[axis] - self.0.0[4 + axis]
+    }
+
+    /// [`Primitive::center`] along all axes, and zero.
+    #[inline(always)]
+    pub(super) fn centers<S: Simd>(&self) -> S::Float4 {
+        let b = self.0.load::<S>();
+        b.low() - b.high()
     }
 }
 
 /// The box around all.
-pub(super) fn union(primitives: &[Primitive]) -> Box4 {
-    primitives.iter().fold(Box4::EMPTY, |b, p| b.union(&p.0))
+pub(super) fn union(primitives: &[Primitive]) -> Box8 {
+    primitives.iter().fold(Box8::EMPTY, |b, p| b.union(&p.0))
 }
 
 /// The box of the centers.
-pub(super) fn centers(primitives: &[Primitive]) -> Box4 {
-    primitives.iter().fold(Box4::EMPTY, |b, p| {
-        let center = zip(p.0.min, &p.0.max, |a, b| a + b);
-        b.union(&Box4 { min: center, max: center })
-    })
+pub(super) fn centers(primitives: &[Primitive]) -> Box8 {
+    let mut all = Box8::EMPTY;
+    for p in primitives {
+        for axis in 0..4 {
+            let center = p.center(axis);
+            (all.0[axis], all.0[4 + axis]) = (min(all.0[axis], center), min(all.0[4 + axis], -center));
+        }
+    }
+    all
 }
 
 /// All triangles that are not degenerate, in the order of the mesh.
@@ -94,6 +124,6 @@ fn primitives_by(mesh: &Mesh, bounds: impl Fn(u32) -> Aabb + Sync) -> Vec<Primit
     // Marks those without a box first and removes them then, since only a parallel iterator of known length writes in place.
     let ids = (0..mesh.triangles.len() as u32).into_par_iter();
     let mut all: Vec<Primitive> = ids.map(|id| Primitive::new(&bounds(id), id)).collect();
-    all.retain(|p| p.0.min[0] != f32::INFINITY);
+    all.retain(|p| p.0.0[0] != f32::INFINITY);
     all
 }

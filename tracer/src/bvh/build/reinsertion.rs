@@ -8,7 +8,7 @@
 //! moves are made one after the other, the most profitable first, without those that come near an earlier one of the round. So the
 //! tree does not depend on the number of threads. At the end small subtrees become leaves where that costs less.
 
-use super::primitive::{Box4, Primitive};
+use super::primitive::{Box8, Primitive};
 use super::{Tree, binned};
 use crate::Error;
 use crate::bvh::Node;
@@ -58,7 +58,7 @@ pub(super) fn build(primitives: Vec<Primitive>, config: &Config, progress: &dyn 
 
 /// A binary tree whose nodes can be moved. Node 0 is the root.
 struct Links {
-    bounds: Vec<Box4>,
+    bounds: Vec<Box8>,
     parents: Vec<u32>,
     /// Both children, or [`NONE`] and the place of a leaf's triangle.
     children: Vec<[u32; 2]>,
@@ -74,8 +74,7 @@ struct Move {
 
 impl Links {
     fn new(nodes: &[Node]) -> Self {
-        let pad = |[x, y, z]: [f32; 3]| [x, y, z, 0.0];
-        let bounds = nodes.iter().map(Node::bounds).map(|b| Box4 { min: pad(b.min), max: pad(b.max) }).collect();
+        let bounds = nodes.iter().map(Node::bounds).map(|b| Box8::new(&b, 0.0)).collect();
         let (mut parents, mut children) = (vec![ROOT; nodes.len()], Vec::with_capacity(nodes.len()));
         for (i, node) in nodes.iter().enumerate() {
             let (first, count) = node.triangles();

@@ -1,42 +1,58 @@
 //! The exact surface area heuristic for a few primitives: cheaper there than bins, and better.
 
-use super::primitive::{Box4, Primitive};
+use super::primitive::{Box8, Primitive};
 use super::sah::{Best, Split};
+use simd::{Level, Simd, Vector, kernel};
 
 /// Most primitives swept; more are binned.
 pub(super) const MAX: usize = 8;
 
-/// The cheapest of all splits between neighbours in the order of the centers along an axis.
-pub(super) fn best(primitives: &[Primitive]) -> Option<Split> {
-    let mut best = Best::new();
-    for axis in 0..3 {
-        let mut row = [Box4::EMPTY; MAX];
-        for (p, rank) in primitives.iter().zip(ranks(primitives, axis)) {
-            row[rank % MAX] = p.0;
-        }
-        best.consider(axis, &row, &[1; MAX], primitives.len());
-    }
-    best.split()
+/// A split between primitives in the order of their centers along its axis.
+pub(super) struct Sweep {
+    pub(super) split: Split,
+    /// Place of each primitive in that order.
+    pub(super) ranks: [u32; MAX],
 }
 
-/// Place of each primitive in the order of the centers along an axis.
-pub(super) fn ranks(primitives: &[Primitive], axis: usize) -> [usize; MAX] {
-    let n = primitives.len().min(MAX);
-    let mut keys = [0.0; MAX];
-    for (key, p) in keys.iter_mut().zip(primitives) {
-        *key = p.center(axis);
-    }
-    let mut ranks = [0; MAX];
-    for i in 1..n {
-        let mut rank = 0;
-        for j in 0..i {
-            let after = usize::from(keys[j] <= keys[i]);
-            rank += after;
-            ranks[j] += 1 - after;
+/// The cheapest of all splits between neighbours in the order of the centers along an axis.
+pub(super) fn best(level: Level, primitives: &[Primitive]) -> Option<Sweep> {
+    kernel! {
+        fn best<S>(primitives: &[Primitive]) -> Option<Sweep> {
+            let n = primitives.len().min(MAX);
+            // Behind all others, where there is none.
+            let mut centers = [[f32::INFINITY; 4]; MAX];
+            for i in 0..n {
+                primitives[i].centers::<S>().store(&mut centers[i]);
+            }
+            let [x, y, z, _] = S::Float8::load_rows4(&centers);
+            let ranks = [ranks::<S>(x, &centers, 0), ranks::<S>(y, &centers, 1), ranks::<S>(z, &centers, 2)];
+            let mut best = Best::<S>::new();
+            for (axis, ranks) in ranks.iter().enumerate() {
+                let mut row = [Box8::EMPTY; MAX];
+                for i in 0..n {
+                    row[ranks[i] as usize % MAX] = primitives[i].0;
+                }
+                best.consider(axis, &row, &[1; MAX], n);
+            }
+            best.split().map(|split| Sweep { split, ranks: ranks[split.axis] })
         }
-        ranks[i] = rank;
     }
-    ranks
+    best(level, primitives)
+}
+
+/// Place of each center in their order along an axis; equal ones in the order they have.
+#[inline(always)]
+fn ranks<S: Simd>(centers: S::Float8, rows: &[[f32; 4]; MAX], axis: usize) -> [u32; MAX] {
+    let lanes = S::Uint8::load(&[0, 1, 2, 3, 4, 5, 6, 7]);
+    let mut ranks = S::Uint8::splat(0);
+    for (j, row) in rows.iter().enumerate() {
+        let other = S::Float8::splat(row[axis]);
+        let before = other.lt(centers) | (other.eq(centers) & S::Uint8::splat(j as u32).lt(lanes));
+        ranks += S::Uint8::select(before, S::Uint8::splat(1), S::Uint8::splat(0));
+    }
+    let mut places = [0; MAX];
+    ranks.store(&mut places);
+    places
 }
 
 #[cfg(test)]
@@ -56,13 +72,22 @@ mod tests {
 
     #[test]
     fn ranks_sort_and_keep_the_order_of_equals() {
+        kernel! {
+            fn ranks_of<S>(rows: &[[f32; 4]; MAX], axis: usize) -> [u32; MAX] {
+                ranks::<S>(S::Float8::load_rows4(rows)[axis], rows, axis)
+            }
+        }
         for seed in 0..200 {
             let primitives = boxes(1 + seed as usize % MAX, seed);
             for axis in 0..3 {
+                let mut rows = [[f32::INFINITY; 4]; MAX];
+                primitives.iter().zip(&mut rows).for_each(|(p, row)| row[axis] = p.center(axis));
                 let mut sorted: Vec<usize> = (0..primitives.len()).collect();
                 sorted.sort_by(|&a, &b| primitives[a].center(axis).total_cmp(&primitives[b].center(axis)));
-                let ranks = ranks(&primitives, axis);
-                assert!(sorted.iter().enumerate().all(|(rank, &i)| ranks[i] == rank), "seed {seed}");
+                for level in Level::available() {
+                    let ranks = ranks_of(level, &rows, axis);
+                    assert!(sorted.iter().enumerate().all(|(rank, &i)| ranks[i] as usize == rank), "seed {seed}");
+                }
             }
         }
     }
@@ -83,8 +108,10 @@ mod tests {
                 }
             }
             let least = costs.iter().fold(costs[0], |a, &b| if b.0 < a.0 { b } else { a });
-            let found = best(&primitives).unwrap();
-            assert_eq!((found.cost, found.axis, found.below), least, "seed {seed}");
+            for level in Level::available() {
+                let Split { axis, below, cost } = best(level, &primitives).expect("finite costs").split;
+                assert_eq!((cost, axis, below), least, "seed {seed}, {level}");
+            }
         }
     }
 }
