@@ -30,10 +30,10 @@ fn clean(ray: &Ray) -> Option<Ray> {
 fn hit(ray: &Ray, triangle: &Triangle) -> Option<Hit> {
     let &Triangle { v0, e1, e2, .. } = triangle;
     let from_v0 = sub(ray.org, v0);
-    let (p, q) = (cross(ray.dir, e2), cross(from_v0, e1));
-    let det = dot(e1, p);
+    let (normal, moment) = (cross(e2, e1), cross(from_v0, ray.dir));
+    let det = dot(ray.dir, normal);
     let sign = 1.0_f32.copysign(det);
-    let (u, v) = (sign * dot(from_v0, p), sign * dot(ray.dir, q));
+    let (u, v) = (sign * dot(e2, moment), 0.0 - sign * dot(e1, moment));
     let det = det.abs();
     if !(det.is_normal() && u >= 0.0 && v >= 0.0 && u + v <= det) {
         return None;
@@ -54,7 +54,7 @@ fn hit(ray: &Ray, triangle: &Triangle) -> Option<Hit> {
     if near > far {
         return None;
     }
-    let t = (sign * dot(e2, q) * inv).max(near).min(far) + 0.0;
+    let t = (-sign * dot(from_v0, normal) * inv).max(near).min(far) + 0.0;
     (ray.t_min <= t && t <= ray.t_max).then_some(Hit { t, u: u * inv, v: v * inv, primitive: triangle.id })
 }
 

@@ -4,7 +4,7 @@
 //! interval computed for any box around it, and no box on the way to a triangle can reject a hit that lies in the interval of
 //! the triangle's own box.
 
-use super::{Packet, Triangle, Vec3};
+use super::{Packet, Vec3};
 use simd::Float;
 
 /// Which of a box's planes is the near one on each axis, for rays whose directions have the same signs.
@@ -56,8 +56,8 @@ pub(crate) trait Origin<F: Float>: Copy {
     /// `plane - origin` on an axis.
     fn to_plane(self, ray: &Packet<F>, plane: f32, axis: usize) -> F;
 
-    /// `o = origin - v0`, `o x e1`, `e2 . (o x e1)`.
-    fn triangle_terms(self, ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F);
+    /// The origin, seen from a vertex.
+    fn seen_from(self, ray: &Packet<F>, vertex: [f32; 3]) -> Vec3<F>;
 }
 
 /// Each ray has its own origin.
@@ -76,10 +76,8 @@ impl<F: Float> Origin<F> for PerRay {
     }
 
     #[inline(always)]
-    fn triangle_terms(self, ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F) {
-        let o = ray.org - Vec3::splat(triangle.v0);
-        let q = o.cross(Vec3::splat(triangle.e1));
-        (o, q, Vec3::splat(triangle.e2).dot(q))
+    fn seen_from(self, ray: &Packet<F>, vertex: [f32; 3]) -> Vec3<F> {
+        ray.org - Vec3::splat(vertex)
     }
 }
 
@@ -94,12 +92,8 @@ impl<F: Float> Origin<F> for Shared {
     }
 
     #[inline(always)]
-    fn triangle_terms(self, _ray: &Packet<F>, triangle: &Triangle) -> (Vec3<F>, Vec3<F>, F) {
-        let lanes = |[x, y, z]: [f32; 3]| Vec3::<f32> { x, y, z };
-        let o = lanes(self.0) - lanes(triangle.v0);
-        let q = o.cross(lanes(triangle.e1));
-        let distance = lanes(triangle.e2).dot(q);
-        (Vec3::splat([o.x, o.y, o.z]), Vec3::splat([q.x, q.y, q.z]), F::splat(distance))
+    fn seen_from(self, _ray: &Packet<F>, [x, y, z]: [f32; 3]) -> Vec3<F> {
+        Vec3::splat([self.0[0] - x, self.0[1] - y, self.0[2] - z])
     }
 }
 

@@ -56,6 +56,15 @@ impl<const W: usize> TriangleGroup<W> {
         (id != Hit::NO_PRIMITIVE).then_some(Triangle { v0, id, e1, material: 0, e2, geometry: 0 })
     }
 
+    /// Lower and upper planes of each triangle's box.
+    #[inline(always)]
+    pub(crate) fn planes<F: Float>(&self) -> (Vec3<F>, Vec3<F>) {
+        let [v0, e1, e2] = self.corner_and_edges::<F>();
+        // As in `Triangle::bounds`.
+        let (b, c) = (v0 + e1, v0 + e2);
+        (b.min(c).min(v0), c.max(b).max(v0))
+    }
+
     /// `v0`, `e1`, `e2` as vectors of `W` lanes.
     #[inline(always)]
     pub(crate) fn corner_and_edges<F: Float>(&self) -> [Vec3<F>; 3] {
