@@ -158,14 +158,16 @@ impl Ready {
         a.dot(b) / (a.dot(a) * b.dot(b)).sqrt()
     }
 
-    /// The smallest cosine of the angles between the first valid ray and the others.
+    /// Whether the cosines of the angles between the first valid ray and the others are at least `least`, which is positive.
     #[inline(always)]
-    pub(super) fn cosine<F: Float>(&self) -> f32 {
+    pub(super) fn are_within<F: Float>(&self, least: f32) -> bool {
         const { assert!(F::LANES == 16, "a lane for each ray") }
         let first = self.ray(self.valid.trailing_zeros() as usize % 16).dir;
         let (a, b) = (Vec3::<F>::load(&self.dir, 0), Vec3::splat([first.x, first.y, first.z]));
-        let cosines = a.dot(b) / (a.dot(a) * b.dot(b)).sqrt();
-        F::select(F::Mask::from_bitmask(u32::from(self.valid)), cosines, F::splat(1.0)).reduce_min()
+        // Squared: a root and a division take longer than all else here.
+        let (cosine, limit) = (a.dot(b), F::splat(least * least * first.dot(first)));
+        let within = F::splat(0.0).lt(cosine) & (limit * a.dot(a)).le(cosine * cosine);
+        within.bitmask() as u16 & self.valid == self.valid
     }
 }
 

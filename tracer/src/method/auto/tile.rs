@@ -110,7 +110,7 @@ impl<Q: Query> Tile<Q> {
             self.begin::<S::Float16>(block);
             let rays = &self.rays[block];
             match octants[block] {
-                Some(octant) if rays.cosine::<S::Float16>() >= self.limits.coherent => {
+                Some(octant) if rays.are_within::<S::Float16>(self.limits.coherent) => {
                     self.bounds.set::<S::Float16>(block, rays);
                     self.block::<S, C>(bvh, Near::of_octant(octant), Child::node(0), block, 0, count);
                 }
@@ -243,7 +243,7 @@ impl<Q: Query> Tile<Q> {
         let mut active = u16::MAX;
         loop {
             if child.is_leaf() {
-                self.leaf::<S::Float16, C>(bvh, octant, child, 1 << block, count);
+                self.block_leaf::<S, C>(bvh, octant, child, block, count);
             } else if active.count_ones() <= self.limits.rays {
                 self.singles::<S, C>(bvh, child, block, active, count);
             } else {
@@ -389,6 +389,38 @@ impl<Q: Query> Tile<Q> {
             rays.reach.0[lane] = walk.run::<Arity<N>, S, Q, C>(child, stack, found, count);
         }
         if Q::CLOSEST {
+            self.update_reach::<S::Float16>(block);
+        }
+    }
+
+    /// The triangles of a leaf whose boxes any ray of one block may meet, for that block.
+    #[inline(always)]
+    fn block_leaf<S: Simd, C: Count>(
+        &mut self,
+        bvh: &WideBvh<N>,
+        near: Near,
+        leaf: Child,
+        block: usize,
+        count: &mut C,
+    ) {
+        let mut hits = 0;
+        // As in `mixed`.
+        let block = black_box(block) % BLOCKS;
+        let (all, reach) =
+            (self.bounds.of_block::<S::Float4>(block, near), S::Float4::splat(self.bounds.reach.0[block]));
+        let (first, end) = leaf.groups();
+        for group in &bvh.groups[first..end] {
+            let (low, high) = group.planes::<S::Float4>();
+            let (from, to) = all.between(near.choose(low, high), near.choose(high, low), reach);
+            let mut meeting = from.le(to).bitmask();
+            while meeting != 0 {
+                let lane = meeting.trailing_zeros() as usize % WideBvh::<N>::GROUP;
+                meeting &= meeting - 1;
+                let Some(triangle) = group.triangle(lane) else { break };
+                hits |= self.triangle::<S::Float16, C>(&triangle, near, 1 << block, count);
+            }
+        }
+        if hits != 0 {
             self.update_reach::<S::Float16>(block);
         }
     }
