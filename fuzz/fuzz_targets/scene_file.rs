@@ -29,7 +29,7 @@ fuzz_target!(init: one_thread(), |bytes: &[u8]| {
         scene.occluded_batch(&rays, &mut occluded);
         for (i, ray) in rays.iter().enumerate() {
             if let Some(hit) = scene.closest(&ray) {
-                scene.locate(hit.primitive);
+                let _ = scene.locate(hit.primitive);
             }
             let _ = (scene.occluded(&ray), hits.get(i), occluded.get(i));
         }
