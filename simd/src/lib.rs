@@ -39,7 +39,8 @@
 //! - [`native`]: the types of the compilation target, without dispatch.
 //! - [`Simd`]: the types of a level. [`Vector`], [`Float`], [`Int`], [`Uint`], [`Double`], [`Mask`]: what they can do;
 //!   [`Narrow`]: what those of 16- and 8-bit lanes can; [`operations`]: all of it in one table.
-//! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`]: a hint.
+//! - [`Block`], [`AlignedVec`]: aligned storage. [`math`]: functions computed from operations. [`prefetch`] and
+//!   [`vec_in_huge_pages`]: hints.
 //! - [`coming_from`]: the idioms of other libraries.
 //! - [`interop`]: conversions for bytemuck, glam, wide and pulp, each a feature.
 //!
@@ -113,6 +114,8 @@ mod aligned;
 mod backend;
 mod block;
 pub mod coming_from;
+#[cfg(feature = "alloc")]
+mod huge_pages;
 pub mod interop;
 mod level;
 pub mod math;
@@ -125,6 +128,8 @@ mod vector;
 #[cfg(feature = "alloc")]
 pub use aligned::AlignedVec;
 pub use block::Block;
+#[cfg(feature = "alloc")]
+pub use huge_pages::vec_in_huge_pages;
 #[cfg(feature = "alloc")]
 pub use level::LevelError;
 pub use level::{Isa, Kernel, Level};

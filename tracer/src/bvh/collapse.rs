@@ -93,7 +93,9 @@ pub(super) fn collapse<const N: usize>(
     }
     // Before there are groups, which take as much.
     drop((best, nodes));
-    wide.nodes.shrink_to_fit();
+    let mut all = simd::vec_in_huge_pages(wide.nodes.len());
+    all.append(&mut wide.nodes);
+    wide.nodes = all;
     let group = |(first, number): (u32, u32)| {
         let mut group = TriangleGroup::EMPTY;
         for lane in 0..number as usize {
@@ -101,7 +103,8 @@ pub(super) fn collapse<const N: usize>(
         }
         group
     };
-    wide.groups = leaves.groups.into_par_iter().map(group).collect();
+    wide.groups = simd::vec_in_huge_pages(leaves.groups.len());
+    leaves.groups.into_par_iter().map(group).collect_into_vec(&mut wide.groups);
     wide
 }
 
@@ -147,7 +150,8 @@ fn in_twos(nodes: Cow<[Node]>) -> Cow<[Node]> {
 }
 
 fn best<const N: usize>(nodes: &[Node], config: &CollapseConfig) -> Vec<Best<N>> {
-    let mut best = vec![Best { left: [0; N], fate: Fate::Leaf, triangles: (0, 0) }; nodes.len()];
+    let mut best = simd::vec_in_huge_pages(nodes.len());
+    best.resize(nodes.len(), Best { left: [0; N], fate: Fate::Leaf, triangles: (0, 0) });
     let max_leaf = config.max_leaf.min(GROUP * Child::MAX_GROUPS);
     // Costs of the subtrees that have no parent yet, as at most 1, 2, ... children: from the last node to the first the children of a
     // node lie on top, the first above the second.

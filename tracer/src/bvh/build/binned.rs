@@ -41,7 +41,8 @@ pub enum ChildOrder {
 
 pub(super) fn build(mut primitives: Vec<Primitive>, config: &Config, progress: &dyn Progress) -> Result<Tree, Error> {
     let mut ids = vec![0; primitives.len()];
-    let mut scratch = primitives.clone();
+    let mut scratch = simd::vec_in_huge_pages(primitives.len());
+    scratch.extend_from_slice(&primitives);
     let bounds = union(&primitives);
     let range = Range { src: &mut primitives, dst: &mut scratch, ids: &mut ids, first: 0, depth: 0, bounds };
     let config = Config { max_leaf: config.max_leaf.clamp(1, Node::MAX_LEAF), ..*config };

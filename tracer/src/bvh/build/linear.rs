@@ -39,7 +39,8 @@ pub(super) fn build(primitives: Vec<Primitive>, config: &Config, progress: &dyn 
     let config = Config { max_leaf: config.max_leaf.clamp(1, Node::MAX_LEAF), ..*config };
     let keys = keys(&primitives);
     progress.check()?;
-    let sorted: Vec<_> = keys.par_iter().map(|&(_, i)| primitives[i as usize]).collect();
+    let mut sorted = simd::vec_in_huge_pages(primitives.len());
+    keys.par_iter().map(|&(_, i)| primitives[i as usize]).collect_into_vec(&mut sorted);
     drop(primitives);
     let builder = Builder { primitives: &sorted, keys: &keys, config, progress };
     let (top, _) = builder.top(Range { first: 0, end: sorted.len(), depth: 0 })?;
@@ -66,7 +67,8 @@ fn keys(primitives: &[Primitive]) -> Vec<(u64, u32)> {
         }
         code
     };
-    let mut keys: Vec<_> = primitives.par_iter().enumerate().map(|(i, p)| (code(p), i as u32)).collect();
+    let mut keys = simd::vec_in_huge_pages(primitives.len());
+    primitives.par_iter().enumerate().map(|(i, p)| (code(p), i as u32)).collect_into_vec(&mut keys);
     keys.par_sort_unstable();
     keys
 }

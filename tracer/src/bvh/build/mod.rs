@@ -134,7 +134,8 @@ impl Bvh {
     /// [`Error::Geometry`] as [`Mesh::validate`] has it, [`Error::Cancelled`] when `progress` says so.
     pub fn build(mesh: &Mesh, config: &BuildConfig, progress: &dyn Progress) -> Result<Self, Error> {
         let Tree { nodes, ids } = tree(mesh, primitive::primitives, config, progress)?;
-        let triangles = ids.into_par_iter().map(|id| triangle(mesh, id)).collect();
+        let mut triangles = simd::vec_in_huge_pages(ids.len());
+        ids.into_par_iter().map(|id| triangle(mesh, id)).collect_into_vec(&mut triangles);
         Ok(Self { nodes, triangles })
     }
 }

@@ -17,7 +17,7 @@ impl Part {
 
     /// All nodes, depth first.
     pub(super) fn into_nodes(self) -> Vec<Node> {
-        let mut nodes = Vec::with_capacity(self.len());
+        let mut nodes = simd::vec_in_huge_pages(self.len());
         self.flatten(&mut nodes);
         nodes
     }

@@ -123,7 +123,8 @@ pub(super) fn slivers_too(mesh: &Mesh) -> Vec<Primitive> {
 fn primitives_by(mesh: &Mesh, bounds: impl Fn(u32) -> Aabb + Sync) -> Vec<Primitive> {
     // Marks those without a box first and removes them then, since only a parallel iterator of known length writes in place.
     let ids = (0..mesh.triangles.len() as u32).into_par_iter();
-    let mut all: Vec<Primitive> = ids.map(|id| Primitive::new(&bounds(id), id)).collect();
+    let mut all = simd::vec_in_huge_pages(mesh.triangles.len());
+    ids.map(|id| Primitive::new(&bounds(id), id)).collect_into_vec(&mut all);
     all.retain(|p| p.0.0[0] != f32::INFINITY);
     all
 }
