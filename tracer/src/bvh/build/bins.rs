@@ -6,7 +6,8 @@ use super::sah::{Best, Split};
 use rayon::prelude::*;
 use simd::{Float, Halves, Level, Simd, Vector, kernel};
 
-/// Measured on balls: 32 bins take 10 % longer for a tree 0.1 % better, 8 save 4 % for one 0.3 % worse.
+/// Measured on balls: 32 make a tree 0.1 % better. Fewer bins for fewer primitives save no time if they are 8 at least, and with 4 and one more for
+/// every 16 primitives the tree's cost is 9.7 instead of 7.8.
 const BINS: usize = 16;
 
 /// Maps centers to bins.

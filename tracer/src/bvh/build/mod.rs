@@ -11,7 +11,7 @@
 //! | kitchen | 6.78, 1.70; 77.6, 20.8 | 5.51, 1.38; 68.9, 14.7 | 3.46, 1.15; 49.6, 8.9 |
 //! | balls | 1.82, 0.35; 6.24, 0.31 | 1.68, 0.31; 7.84, 0.17 | 1.62, 0.31; 5.88, 0.21 |
 //! | hairball | 34.8, 7.69; 365, 19.7 | 32.4, 7.09; 317, 15.1 | 30.4, 6.94; 294, 12.9 |
-//! | time to build | 0.35 to 0.55 | 1 | 4 to 10 |
+//! | time to build | 0.7 to 0.8 | 1 | 8 to 11 |
 //!
 //! There are no spatial splits. The box of a piece of a triangle does not hold the triangle's box, so that hits would not be exact
 //! any more; and cutting the triangles with the largest boxes to 1.1, 1.3 or 1.6 times as many pieces before building (Karras and Aila 2013)
