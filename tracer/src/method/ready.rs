@@ -133,6 +133,29 @@ impl Ready {
         (x[1] - x[0]) + (y[1] - y[0]) + (z[1] - z[0])
     }
 
+    /// A box outside of which no valid ray meets anything: around their origins and ends.
+    ///
+    /// A ray that comes to a plane at `t <= end` as computed, each operation rounded, comes there at `t <= (1 + 2^-21) end`; that and the roundings of
+    /// the ends themselves are less than what is added here.
+    #[inline(always)]
+    pub(super) fn extent<F: Float>(&self) -> [[f32; 2]; 3] {
+        const { assert!(F::LANES == 16, "a lane for each ray") }
+        let on = F::Mask::from_bitmask(u32::from(self.valid));
+        let (reach, least) = (F::load_block(&self.reach, 0), F::splat(f32::MIN_POSITIVE));
+        let mut extent = [[0.0; 2]; 3];
+        for (axis, extent) in extent.iter_mut().enumerate() {
+            let (org, dir) = (F::load_block(&self.org[axis], 0), F::load_block(&self.dir[axis], 0));
+            let way = dir.abs().max(least).copysign(dir) * reach;
+            let (end, slack) = (org + way, (org.abs() + way.abs()) * F::splat(8.0 * f32::EPSILON));
+            let (low, high) = (org.min(end) - slack, org.max(end) + slack);
+            *extent = [
+                F::select(on, low, F::splat(f32::INFINITY)).reduce_min(),
+                F::select(on, high, F::splat(f32::NEG_INFINITY)).reduce_max(),
+            ];
+        }
+        extent
+    }
+
     /// Smallest and largest reciprocal of the direction of the lanes of `mask`, which has one at least.
     #[inline(always)]
     pub(super) fn inverses<F: Float>(&self, mask: u16) -> [[f32; 2]; 3] {
@@ -184,4 +207,63 @@ fn range<F: Float>(v: &Block<f32>, mask: u16) -> [f32; 2] {
     let low = F::select(on, x, F::splat(f32::INFINITY)).reduce_min();
     let high = F::select(on, x, F::splat(f32::NEG_INFINITY)).reduce_max();
     [low, high]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Ray, slab};
+    use simd::{Level, kernel};
+
+    kernel! {
+        fn extent_of<S>(rays: &Ready) -> [[f32; 2]; 3] {
+            rays.extent::<S::Float16>()
+        }
+    }
+
+    #[test]
+    fn no_box_beyond_the_extent_is_met() {
+        let mut state = 1_u32;
+        let mut number = |scale: f32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let x = ((state >> 8) as f32 / 8_388_608.0 - 1.0) * scale;
+            if state >> 4 & 7 == 0 { 0.0 } else { x }
+        };
+        let (mut met, mut passed) = (0, 0);
+        for round in 0..2000 {
+            let scale = [1.0, 1e-6, 1e5, 1e18][round % 4];
+            let mut block = RayBlock::NONE;
+            for lane in 0..16 {
+                let (org, dir) = ([0; 3].map(|_| number(scale)), [0; 3].map(|_| number(1.0)));
+                let t_max = if lane == round % 40 { f32::INFINITY } else { number(scale).abs() };
+                block.set(lane, &Ray { org, t_min: 0.0, dir, t_max });
+            }
+            let mut rays = Ready::new::<f32>(&block, scale);
+            rays.valid &= u16::MAX >> (round % 16);
+            if rays.valid == 0 {
+                continue;
+            }
+            let extent = extent_of(Level::best(), &rays);
+            assert!(Level::available().all(|level| extent_of(level, &rays) == extent));
+            for lane in (0..16).filter(|lane| rays.valid >> lane & 1 != 0) {
+                let ray = rays.ray(lane);
+                // Flat boxes about the end: as near to not being met as can be.
+                for steps in -3..4 {
+                    let end =
+                        [(ray.org.x, ray.dir.x), (ray.org.y, ray.dir.y), (ray.org.z, ray.dir.z)].map(|(org, dir)| {
+                            let end = org + dir * ray.t_max.min(1e20);
+                            end + steps as f32 * f32::EPSILON * end.abs()
+                        });
+                    let plane = Vec3::<f32>::splat(end);
+                    let (from, to) = slab::between(plane - ray.org, plane - ray.org, &ray, ray.t_min, ray.t_max);
+                    let touches = (0..3).all(|axis| extent[axis][0] <= end[axis] && end[axis] <= extent[axis][1]);
+                    assert!(from > to || touches, "{ray:?} {end:?} {extent:?}");
+                    met += u32::from(from <= to);
+                }
+                let beyond = (0..3).any(|axis| extent[axis][1] < scale * 3.0);
+                passed += u32::from(beyond);
+            }
+        }
+        assert!(met > 1000 && passed > 1000, "{met} {passed}");
+    }
 }

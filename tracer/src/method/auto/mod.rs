@@ -36,7 +36,7 @@ pub struct Limits {
 impl Default for Limits {
     /// What was fastest.
     fn default() -> Self {
-        Self { together: 0.97, coherent: 0.9, blocks: 3, rays: 4, mixed_closest: 10, mixed_any: 5, scatter: 0.05 }
+        Self { together: 0.97, coherent: 0.9, blocks: 3, rays: 4, mixed_closest: 10, mixed_any: 4, scatter: 0.05 }
     }
 }
 

@@ -288,6 +288,8 @@ impl<Q: Query> Tile<Q> {
         let ray = self.rays[block].packet::<S::Float16>(&self.from[block]);
         let limit = if Q::CLOSEST { self.limits.mixed_closest } else { self.limits.mixed_any };
         let infinity = S::Float16::splat(f32::INFINITY);
+        // Rays that ask for any hit are often short.
+        let extent = if Q::CLOSEST { [[0.0; 2]; 3] } else { self.rays[block].extent::<S::Float16>() };
         let mut free = 0;
         let (mut child, mut active) = (Child::node(0), self.rays[block].valid);
         loop {
@@ -308,9 +310,13 @@ impl<Q: Query> Tile<Q> {
                     S::Float16::load_block(&rays.reach, 0),
                 );
                 let bottom = free;
+                let reachable = if Q::CLOSEST { 0 } else { near_to::<S::Float8>(node, black_box(&extent)) };
                 for i in 0..N {
                     if node.children[i] == Child::NONE {
                         break;
+                    }
+                    if !Q::CLOSEST && reachable >> i & 1 == 0 {
+                        continue;
                     }
                     let (low, high) = planes(node, [0; 3], i);
                     let (t_near, t_far) = boxes.interval(low, high, start, reach);
@@ -490,6 +496,16 @@ fn size(node: &WideNode<N>) -> f32 {
 fn planes<F: Float>(node: &WideNode<N>, [x, y, z]: [usize; 3], i: usize) -> (Vec3<F>, Vec3<F>) {
     let p = &node.planes;
     (Vec3::splat([p[x][i], p[1 + y][i], p[2 + z][i]]), Vec3::splat([p[3 - x][i], p[4 - y][i], p[5 - z][i]]))
+}
+
+/// The children whose boxes touch a box.
+#[inline(always)]
+fn near_to<F: Float>(node: &WideNode<N>, [x, y, z]: &[[f32; 2]; 3]) -> u32 {
+    let p = &node.planes;
+    let x = F::load(&p[0]).le(F::splat(x[1])) & F::splat(x[0]).le(F::load(&p[3]));
+    let y = F::load(&p[1]).le(F::splat(y[1])) & F::splat(y[0]).le(F::load(&p[4]));
+    let z = F::load(&p[2]).le(F::splat(z[1])) & F::splat(z[0]).le(F::load(&p[5]));
+    (x & y & z).bitmask()
 }
 
 /// Which boxes any of the rays may meet, and where the first may enter them.
