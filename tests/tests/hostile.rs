@@ -214,7 +214,7 @@ fn every_method_finds_the_same_in_hostile_scenes() {
 
 /// Some minutes in release.
 #[test]
-#[ignore = "long"]
+#[ignore = "minutes: with a release build, when geometry or a method changes"]
 fn every_method_finds_the_same_in_many_hostile_scenes() {
     hostile_rounds(104..2_000);
 }
