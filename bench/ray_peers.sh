@@ -23,16 +23,20 @@ if [ "$level" != best ]; then
     ours+=";level=$level"
     embree+=";isa=$level"
 fi
-report=bench/reports/ray_peers${LEVEL:+_$LEVEL}.md
+report=bench/reports/ray_peers${LEVEL:+_$LEVEL}${THREADS:+_threads_$THREADS}.md
 
 # Runs one kind of rays: its name, Embree's methods, ours; then the files of rays, Embree's first.
 row() {
     local name=$1 theirs=$2 our=$3 methods=()
     shift 3
     for method in $theirs; do methods+=("$embree/$method"); done
+    # Of a packet, its share for each ray.
+    local counted
+    counted=$(cd "$peers" && bin/bench "scenes/$scene.mesh" -t 1 -r 1 -m "$ours;count=1/$our" -R "${2:-$1}" 2>&1 >/dev/null |
+        awk '/^counted/ { print $2 " | " $3; exit }')
     (cd "$peers" && bin/bench "scenes/$scene.mesh" -t "${THREADS:-1}" -c 65536 -r "${REPEAT:-7}" \
         -m "${methods[@]}" "$ours/$our" -R "$@") |
-        awk -F, -v name="$name" -v theirs="$(basename "$1")" -v mine="$(basename "${2:-$1}")" -v scene="$scene" '
+        awk -F, -v name="$name" -v theirs="$(basename "$1")" -v mine="$(basename "${2:-$1}")" -v scene="$scene" -v counted="$counted" '
             function rate() { for (i = 1; i <= NF; i++) if ($i ~ /^wall_med=|^cpu_med=/) { split($i, p, "="); v[p[1]] = p[2] } return v["cpu_med"] }
             # The harness names a set of rays by what follows the first "_" of its file.
             BEGIN { sub(/^[^_]*_/, "", theirs); sub(/^[^_]*_/, "", mine) }
@@ -41,7 +45,7 @@ row() {
             set == mine && $4 !~ /^embree/ { our = rate() }
             END {
                 if (!best || !our) { print "ray_peers.sh: no figure for " name " in " scene > "/dev/stderr"; exit 1 }
-                printf "| %s | %s | %.2f (%s) | %.2f | %.2f |\n", scene, name, best, mode, our, our / best
+                printf "| %s | %s | %.2f (%s) | %.2f | %.2f | %s |\n", scene, name, best, mode, our, our / best, counted
             }'
 }
 
@@ -51,10 +55,11 @@ load=$(cut -d ' ' -f 1 /proc/loadavg)
     echo
     echo "$(sed -n 's/^model name.*: //p' /proc/cpuinfo | head -1) (family $(sed -n 's/^cpu family.*: //p' /proc/cpuinfo | head -1)," \
         "model $(sed -n 's/^model\t.*: //p' /proc/cpuinfo | head -1)), load $load at the start, $(rustc -V), level $level, ${THREADS:-1} thread(s)," \
-        "medians of ${REPEAT:-7}; by \`bench/ray_peers.sh\`. Million rays per second of CPU time; Embree's best mode in brackets."
+        "medians of ${REPEAT:-7}; by \`bench/ray_peers.sh\`. Million rays per second of CPU time; Embree's best mode in brackets." \
+        "Nodes and triangle tests are auto's; what several rays do together counts once, shared among them."
     echo
-    echo "| scene | rays | Embree | auto | ratio |"
-    echo "|---|---|---|---|---|"
+    echo "| scene | rays | Embree | auto | ratio | nodes a ray | triangle tests a ray |"
+    echo "|---|---|---|---|---|---|---|"
     for scene in "${scenes[@]}"; do
         echo "$scene" >&2
         row "primary" "i1 i8c i16c" i "rays/${scene}_prim_mort" "rays/${scene}_prim_scan"

@@ -2,7 +2,8 @@
 //! plugins of other tracers and measures all of them on the same rays, in turn, in one run.
 //!
 //! `rt_build` takes a specification: `wide8` for [`Auto`]; `singlewide4`, `singlewide8`, `singlewide16` for [`Single`]; `binary`
-//! for [`Packet`]; then `;level=avx2` and the like. Methods: `i` for closest hits, `o` for occlusion.
+//! for [`Packet`]; then `;level=avx2` and the like. Methods: `i` for closest hits, `o` for occlusion. With `;count=1` the nodes and
+//! triangle tests of each call go to the error output; times are then of no use.
 //!
 //! ```text
 //! cargo build --release -p peers-plugin
@@ -18,6 +19,7 @@ use tracer::geometry::{HitBatch, RayBatch};
 use tracer::method::{Auto, BitVec, Context, Limits, Method, Packet, Single, Width};
 use tracer::model::Mesh;
 use tracer::progress::Silent;
+use tracer::stats::Counters;
 
 /// `nv` vertices of three floats, `nt` triangles of three indices.
 #[repr(C)]
@@ -71,6 +73,7 @@ pub struct Tracer {
     level: Level,
     single: bool,
     limits: Limits,
+    count: bool,
 }
 
 impl Tracer {
@@ -91,11 +94,13 @@ fn build(spec: &str, mesh: &Mesh) -> Result<Tracer, String> {
     let kind = words.next().unwrap_or_default();
     let (kind, single) = kind.strip_prefix("single").map_or((kind, false), |kind| (kind, true));
     let mut limits = Limits::default();
+    let mut count = false;
     let (mut level, mut collapse, mut config) = (Level::best(), CollapseConfig::default(), BuildConfig::default());
     for word in words {
         let (key, value) = word.split_once('=').ok_or(format!("'{word}' is not key=value"))?;
         let number = || value.parse().map_err(|e| format!("{word}: {e}"));
         match key {
+            "count" => count = value == "1",
             "level" => level = value.parse().map_err(|e| format!("{e}"))?,
             "node_cost" => collapse.node_cost = number()?,
             "max_leaf" => collapse.max_leaf = number()? as usize,
@@ -127,7 +132,7 @@ fn build(spec: &str, mesh: &Mesh) -> Result<Tracer, String> {
         _ => return Err(format!("unknown tree '{kind}'")),
     };
     let tree = tree.map_err(|e| e.to_string())?;
-    Ok(Tracer { tree, level, single, limits })
+    Ok(Tracer { tree, level, single, limits, count })
 }
 
 /// Builds a tree; null, and a line on the error output, when it cannot.
@@ -216,7 +221,7 @@ pub unsafe extern "C" fn rt_trace(
     };
     // Each thread keeps its buffers from one call to the next.
     let Buffers { mut batch, mut hits, mut occluded } = BUFFERS.take();
-    let mut cx = Context::default();
+    let mut cx = Context { counters: tracer.count.then(Counters::default), cancel: None };
     tracer.with_method(|find| {
         for begin in (0..t.len()).step_by(AT_ONCE) {
             let end = t.len().min(begin + AT_ONCE);
@@ -249,4 +254,8 @@ pub unsafe extern "C" fn rt_trace(
         }
     });
     BUFFERS.set(Buffers { batch, hits, occluded });
+    if let Some(counters) = cx.counters {
+        let per_ray = |n: u64| n as f64 / (end - begin) as f64;
+        eprintln!("counted {:.2} {:.2}", per_ray(counters.box_tests), per_ray(counters.triangle_tests));
+    }
 }
