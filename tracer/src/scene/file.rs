@@ -118,9 +118,15 @@ fn parse(bytes: &[u8], level: Level) -> Result<Scene, String> {
         }
         Ok::<_, String>(group)
     };
-    let nodes = (0..nodes).map(|_| node(&mut words)).collect::<Result<Vec<_>, _>>()?;
-    let groups = (0..groups).map(|_| group(&mut words)).collect::<Result<Vec<_>, _>>()?;
-    let bvh = WideBvh::from_parts(nodes, groups).map_err(damaged)?;
+    // As a built tree's: queries miss the TLB less often.
+    let (mut all_nodes, mut all_groups) = (simd::vec_in_huge_pages(nodes), simd::vec_in_huge_pages(groups));
+    for _ in 0..nodes {
+        all_nodes.push(node(&mut words)?);
+    }
+    for _ in 0..groups {
+        all_groups.push(group(&mut words)?);
+    }
+    let bvh = WideBvh::from_parts(all_nodes, all_groups).map_err(damaged)?;
     Ok(Scene { bvh, level, bounds, first, masks, vertices: None })
 }
 
