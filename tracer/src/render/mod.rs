@@ -2,10 +2,12 @@
 
 mod eye;
 mod image;
+mod sampler;
 mod shade;
 
 pub use eye::EyeRays;
 pub use image::Image;
+pub use sampler::Sampler;
 pub use shade::{Lighting, Surfaces};
 
 use crate::Error;
