@@ -13,7 +13,7 @@ mod view;
 
 pub use camera::{Camera, FrameVectors};
 pub use light::Light;
-pub use material::Material;
+pub use material::{Material, Reflection};
 pub use mesh::Mesh;
 pub use procedural::{Builtin, builtin};
 

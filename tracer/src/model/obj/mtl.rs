@@ -2,7 +2,7 @@
 
 use super::tidy::Outline;
 use crate::Error;
-use crate::model::Material;
+use crate::model::{Material, Reflection};
 use std::fmt::Write;
 use std::fs;
 use std::io;
@@ -46,8 +46,8 @@ fn locate(folder: &Path, name: &str) -> Option<PathBuf> {
 
 fn parse(text: &str, path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Material>, Error> {
     let (plain, textures) = tidy(text, path)?;
+    let file = path.display();
     if textures > 0 {
-        let file = path.display();
         warnings.push(format!("{file}: textures are not read ({textures} map_Kd): the colours Kd are used"));
     }
     let (materials, _) = tobj::load_mtl_buf(&mut plain.as_bytes()).map_err(|e| Error::Data {
@@ -57,15 +57,44 @@ fn parse(text: &str, path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Mate
     })?;
     let read = |m: tobj::Material| {
         let default = Material::grey(&m.name);
+        // tobj does not know this keyword; `tidy` checked that three numbers follow.
+        let transmission = m.unknown_param.get("Tf").and_then(|text| numbers(text).ok()?.try_into().ok());
+        let specular = m.specular.unwrap_or(default.specular);
         Material {
             ambient: m.ambient.unwrap_or(default.ambient),
             diffuse: m.diffuse.unwrap_or(default.diffuse),
-            specular: m.specular.unwrap_or(default.specular),
+            specular,
             shininess: m.shininess.unwrap_or(default.shininess),
+            emission: m.emissive.unwrap_or(default.emission),
+            ior: m.optical_density.unwrap_or(default.ior),
+            transmission: transmission.unwrap_or(default.transmission),
+            reflection: reflection(&m, specular, &file.to_string(), warnings),
             name: m.name,
         }
     };
     Ok(materials.into_iter().map(read).collect())
+}
+
+/// What the illumination model of the MTL specification (Wavefront, Advanced Visualizer, appendix B) is here.
+fn reflection(m: &tobj::Material, specular: [f32; 3], file: &str, warnings: &mut Vec<String>) -> Reflection {
+    let name = &m.name;
+    let glossy = if specular == [0.0; 3] { Reflection::Lambertian } else { Reflection::Glossy };
+    let reflection = match m.illumination_model {
+        Some(0 | 1) => Reflection::Lambertian,
+        Some(2 | 8) | None => glossy,
+        Some(3 | 5) => Reflection::Mirror,
+        Some(4 | 6 | 7 | 9) => Reflection::Dielectric,
+        Some(other) => {
+            warnings.push(format!("{file}: illum {other} of material {name:?} is not supported: taken for illum 2"));
+            glossy
+        }
+    };
+    if m.dissolve.is_some_and(|d| d < 1.0) && reflection != Reflection::Dielectric {
+        warnings.push(format!(
+            "{file}: material {name:?} is see-through (d, Tr): opaque here, as only glass is supported (illum 4, 6, 7 or 9)"
+        ));
+    }
+    reflection
 }
 
 /// The lines that are used, with their numbers checked: `tobj` would drop the whole library for any line it does not
@@ -80,8 +109,8 @@ fn tidy(text: &str, path: &Path) -> Result<(String, usize), Error> {
             "newmtl" if rest.is_empty() => return Err(fail("a material needs a name".into())),
             "newmtl" => _ = writeln!(plain, "newmtl {rest}"),
             // A colour as a spectrum is not for us: the default is used.
-            "Ka" | "Kd" | "Ks" if rest.starts_with(['s', 'x']) => {}
-            "Ka" | "Kd" | "Ks" => match numbers(rest).map_err(fail)?[..] {
+            "Ka" | "Kd" | "Ks" | "Ke" | "Tf" if rest.starts_with(['s', 'x']) => {}
+            "Ka" | "Kd" | "Ks" | "Ke" | "Tf" => match numbers(rest).map_err(fail)?[..] {
                 [grey] => _ = writeln!(plain, "{keyword} {grey} {grey} {grey}"),
                 [r, g, b, ..] => _ = writeln!(plain, "{keyword} {r} {g} {b}"),
                 _ => return Err(fail(format!("{keyword} needs 3 numbers (or 1 for a grey)"))),
@@ -90,11 +119,30 @@ fn tidy(text: &str, path: &Path) -> Result<(String, usize), Error> {
                 [exponent, ..] if exponent >= 0.0 => _ = writeln!(plain, "Ns {exponent}"),
                 _ => return Err(fail("Ns needs a number that is not negative".into())),
             },
+            // Many programs write 0 where nothing refracts.
+            "Ni" => match numbers(rest).map_err(fail)?[..] {
+                [index, ..] if index > 0.0 => _ = writeln!(plain, "Ni {index}"),
+                [0.0, ..] => {}
+                _ => return Err(fail("Ni needs a number that is not negative".into())),
+            },
+            "illum" => {
+                if let Some(model) = rest.split_whitespace().next().and_then(|word| word.parse::<u8>().ok()) {
+                    _ = writeln!(plain, "illum {model}");
+                }
+            }
+            // `-halo` and the like are left out.
+            "d" => _ = dissolve(rest).map(|d| writeln!(plain, "d {d}")),
+            "Tr" => _ = dissolve(rest).map(|t| writeln!(plain, "d {}", 1.0 - t)),
             "map_Kd" => textures += 1,
             _ => {}
         }
     }
     Ok((plain, textures))
+}
+
+/// The number of a `d` or `Tr` line, if it is one that makes sense.
+fn dissolve(rest: &str) -> Option<f32> {
+    numbers(rest).ok()?.first().copied().filter(|d| (0.0..=1.0).contains(d))
 }
 
 fn numbers(text: &str) -> Result<Vec<f32>, String> {
@@ -110,10 +158,17 @@ fn numbers(text: &str) -> Result<Vec<f32>, String> {
 pub(super) fn write(materials: &[Material], names: &[String], out: &mut dyn io::Write) -> io::Result<()> {
     for (m, name) in materials.iter().zip(names) {
         writeln!(out, "newmtl {name}")?;
-        for (keyword, [r, g, b]) in [("Ka", m.ambient), ("Kd", m.diffuse), ("Ks", m.specular)] {
+        let colors = [("Ka", m.ambient), ("Kd", m.diffuse), ("Ks", m.specular), ("Ke", m.emission)];
+        for (keyword, [r, g, b]) in colors.into_iter().chain([("Tf", m.transmission)]) {
             writeln!(out, "{keyword} {r} {g} {b}")?;
         }
-        writeln!(out, "Ns {}\n", m.shininess)?;
+        let illum = match m.reflection {
+            Reflection::Lambertian => 1,
+            Reflection::Glossy => 2,
+            Reflection::Mirror => 3,
+            Reflection::Dielectric => 7,
+        };
+        writeln!(out, "Ns {}\nNi {}\nillum {illum}\n", m.shininess, m.ior)?;
     }
     Ok(())
 }

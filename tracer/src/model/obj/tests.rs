@@ -1,6 +1,6 @@
 use super::*;
 use crate::geometry::Aabb;
-use crate::model::builtin;
+use crate::model::{Reflection, builtin};
 use crate::progress::Silent;
 use std::fs;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -171,15 +171,51 @@ fn materials_of_a_library() {
     let text = format!("mtllib sub\\a b.mtl\n{FOUR}f 1 2 3\nusemtl red one\nf 1 2 3\nusemtl bare\nf 1 2 3\n");
     let (scene, warnings) = read_with(text.as_bytes(), &[("sub/a b.mtl", library)]).expect("sound");
     let red = Material {
-        name: "red one".into(),
         ambient: [0.1, 0.2, 0.3],
         diffuse: [1.0, 0.0, 0.0],
         specular: [0.5; 3],
         shininess: 20.0,
+        reflection: Reflection::Glossy,
+        ..Material::grey("red one")
     };
-    assert_eq!(scene.materials, [red, Material::grey("bare"), Material::grey("default")]);
+    let bare = Material { emission: [1.0; 3], ..Material::grey("bare") };
+    assert_eq!(scene.materials, [red, bare, Material::grey("default")]);
     assert_eq!(scene.mesh.materials, [2, 0, 1]);
     assert!(warnings.len() == 1 && warnings[0].contains("1 map_Kd"), "{warnings:?}");
+}
+
+/// What `illum`, `Ke`, `Ni`, `Tf`, `d` and `Tr` mean, and which warnings there are.
+#[test]
+fn reflection_models_of_a_library() {
+    use Reflection::{Dielectric, Glossy, Lambertian, Mirror};
+    for (lines, reflection, warning) in [
+        ("", Lambertian, ""),
+        ("Ks 1 1 1", Glossy, ""),
+        ("Ks 1 1 1\nillum 1", Lambertian, ""),
+        ("Ks 0 0 0\nillum 2", Lambertian, ""),
+        ("Ks .1 0 0\nillum 2\nd 1.0", Glossy, ""),
+        ("illum 3", Mirror, ""),
+        ("illum 5", Mirror, ""),
+        ("illum 4\nd .5", Dielectric, ""),
+        ("illum 7\nTr .5", Dielectric, ""),
+        ("illum 10", Lambertian, "illum 10 of material \"a\" is not supported"),
+        ("d 0.5", Lambertian, "material \"a\" is see-through"),
+        ("Tr 0.5\nillum 3", Mirror, "material \"a\" is see-through"),
+        ("Tr 0\nNi 0", Lambertian, ""),
+    ] {
+        let (text, library) = (format!("mtllib a.mtl\n{FOUR}usemtl a\nf 1 2 3\n"), format!("newmtl a\n{lines}\n"));
+        let (scene, warnings) = read_with(text.as_bytes(), &[("a.mtl", &library)]).expect("sound");
+        let [material] = &scene.materials[..] else { panic!("{lines}: {:?}", scene.materials) };
+        assert_eq!(material.reflection, reflection, "{lines}");
+        assert_eq!(warnings.len(), usize::from(!warning.is_empty()), "{lines}: {warnings:?}");
+        assert!(warnings.iter().all(|w| w.contains(warning)), "{warnings:?}");
+    }
+    let text = format!("mtllib a.mtl\n{FOUR}usemtl a\nf 1 2 3\n");
+    let library = "newmtl a\nKe 1 2.5 3\nTf .5\nNi 1.33\nillum 7\n";
+    let (scene, _) = read_with(text.as_bytes(), &[("a.mtl", library)]).expect("sound");
+    let Material { emission, transmission, ior, .. } = scene.materials[0];
+    assert_eq!((emission, transmission, ior), ([1.0, 2.5, 3.0], [0.5; 3], 1.33));
+    assert_eq!(written(&scene).1.materials, scene.materials);
 }
 
 #[test]
@@ -230,6 +266,8 @@ fn faults_of_a_library() {
         ("newmtl a\nKa\n", 2, "Ka needs 3 numbers"),
         ("newmtl a\nNs -1\n", 2, "not negative"),
         ("newmtl a\nNs\n", 2, "Ns needs a number"),
+        ("newmtl a\nKe 1 2\n", 2, "Ke needs 3 numbers"),
+        ("newmtl a\nNi -1\n", 2, "Ni needs a number"),
         ("newmtl\n", 1, "needs a name"),
     ] {
         let e =

@@ -12,7 +12,7 @@ pub use hairball::hairball;
 pub use rings::rings;
 pub use tree::tree;
 
-use super::{Camera, Light, Material, Model};
+use super::{Camera, Light, Material, Model, Reflection};
 use crate::Error;
 use crate::bvh::Node;
 use tessellate::{CONE_TRIANGLES, SPHERE_TRIANGLES, Tessellator};
@@ -153,11 +153,11 @@ fn matt(name: &str, color: [f32; 3], ambient: f32, diffuse: f32) -> Material {
 fn glossy(name: &str, color: [f32; 3], [ambient, diffuse, highlight]: [f32; 3], angle: f64) -> Material {
     let cos = libm::cos(angle.to_radians());
     Material {
-        name: name.into(),
         ambient: color.map(|c| c * ambient),
-        diffuse: color.map(|c| c * diffuse),
         specular: [highlight; 3],
         shininess: (libm::log(0.5) / libm::log(cos)) as f32,
+        reflection: if highlight > 0.0 { Reflection::Glossy } else { Reflection::Lambertian },
+        ..Material::matt(name, color.map(|c| c * diffuse))
     }
 }
 
