@@ -1,6 +1,6 @@
 //! Work written once for every vector width, and the choice of one.
 
-use simd::{Float, Kernel, Level, Simd};
+use simd::{Float, Isa, Kernel, Level, Simd};
 use std::fmt;
 use std::str::FromStr;
 
@@ -83,6 +83,32 @@ pub(crate) fn run<J: Lanes>(level: Level, lanes: usize, job: J) -> J::Output {
 /// Runs `job` with the registers of the level; with plain `f32` for [`Width::One`].
 pub(crate) fn run_native<J: Lanes>(level: Level, width: Width, job: J) -> J::Output {
     if width == Width::One { job.run::<f32>() } else { level.run(Native(job)) }
+}
+
+/// [`run_native`] for long functions: at emulated levels too with plain `f32`, because their vectors become many times as much code. The bits
+/// are the same.
+pub(crate) fn run_long<J: Lanes>(level: Level, width: Width, job: J) -> J::Output {
+    if width == Width::One { plain(job) } else { level.run(Long(job)) }
+}
+
+struct Long<J>(J);
+
+impl<J: Lanes> Kernel for Long<J> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> J::Output {
+        if const { matches!(S::LEVEL.isa(), Isa::Serial | Isa::Scalar) } {
+            plain(self.0)
+        } else {
+            self.0.run::<S::Float>()
+        }
+    }
+}
+
+#[inline(never)]
+fn plain<J: Lanes>(job: J) -> J::Output {
+    job.run::<f32>()
 }
 
 struct Native<J>(J);

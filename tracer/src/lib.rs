@@ -50,7 +50,7 @@
 //! - [`method`]: ways of finding hits, behind one interface.
 //! - [`Scene`]: a tree and a method, ready to be asked: all that most programs need.
 //! - [`World`]: scenes at many places, and surfaces that are no triangles.
-//! - [`render`]: pictures, in three passes.
+//! - [`render`]: pictures, in three passes; with secondary rays, [`render::integrator`].
 //!
 //! Features `glam` and `mint` add conversions to and from the types of those crates: module `interop`.
 #![forbid(unsafe_code)]

@@ -9,6 +9,8 @@ pub trait Progress: Sync {
     fn stage(&self, _name: &str, _total: u64) {}
     /// `n` more units of the stage are done.
     fn advance(&self, _n: u64) {}
+    /// How it goes, in a few words to be shown beside: a rate, say.
+    fn note(&self, _text: &str) {}
     /// True when the work shall stop early with [`Error::Cancelled`].
     fn cancelled(&self) -> bool {
         false

@@ -22,8 +22,8 @@ pub struct EyeRays {
 }
 
 /// Pixel of each lane inside its tile.
-const LANE_X: [f32; 16] = [0., 1., 0., 1., 2., 3., 2., 3., 0., 1., 0., 1., 2., 3., 2., 3.];
-const LANE_Y: [f32; 16] = [0., 0., 1., 1., 0., 0., 1., 1., 2., 2., 3., 3., 2., 2., 3., 3.];
+pub(super) const LANE_X: [f32; 16] = [0., 1., 0., 1., 2., 3., 2., 3., 0., 1., 0., 1., 2., 3., 2., 3.];
+pub(super) const LANE_Y: [f32; 16] = [0., 0., 1., 1., 0., 0., 1., 1., 2., 2., 3., 3., 2., 2., 3., 3.];
 
 impl EyeRays {
     /// For an image of `width` x `height` pixels, at most 65,535 x 4 each way.
@@ -79,7 +79,7 @@ impl EyeRays {
 }
 
 /// The cells of a grid along a Z-curve.
-fn z_curve(columns: usize, rows: usize) -> Vec<[u16; 2]> {
+pub(super) fn z_curve(columns: usize, rows: usize) -> Vec<[u16; 2]> {
     let spread = |x: usize| (0..16).fold(0_u32, |z, bit| z | ((x >> bit & 1) as u32) << (2 * bit));
     let mut cells: Vec<_> = (0..rows).flat_map(|y| (0..columns).map(move |x| [x as u16, y as u16])).collect();
     cells.sort_by_cached_key(|&[x, y]| spread(x.into()) | spread(y.into()) << 1);

@@ -1,14 +1,22 @@
 //! Pictures, in three passes over the whole image (Geimer & Müller 2003, section 3.1): eye rays, closest hits, shading.
+//! With secondary rays: [`integrator`].
 
 mod eye;
 mod image;
+pub mod integrator;
+mod lights;
+mod material;
 mod sampler;
+mod scenery;
 mod shade;
+mod tone;
 
 pub use eye::EyeRays;
 pub use image::Image;
 pub use sampler::Sampler;
+pub use scenery::Scenery;
 pub use shade::{Lighting, Surfaces};
+pub use tone::Tone;
 
 use crate::Error;
 use crate::geometry::{HitBatch, RayBatch};

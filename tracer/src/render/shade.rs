@@ -13,9 +13,9 @@ use simd::{Block, Float, Level, Mask, Vector};
 #[derive(Debug, Clone)]
 pub struct Surfaces {
     /// Four words per triangle: the normals of its three vertices, and its material.
-    triangles: Vec<u32>,
+    pub(super) triangles: Vec<u32>,
     /// Three words per normal: the mesh's, then one for each flat triangle.
-    normals: Vec<f32>,
+    pub(super) normals: Vec<f32>,
     /// [`Surfaces::MATERIAL`] words per material.
     materials: Vec<f32>,
 }
@@ -190,7 +190,7 @@ impl Lanes for Shade<'_> {
 #[inline(always)]
 fn phong<F: Float>(job: &Job<'_>, point: &Points<F>, block: usize, chunk: usize) -> Vec3<F> {
     let (zero, one) = (F::splat(0.0), F::splat(1.0));
-    let normal = normal(job.surfaces, point);
+    let normal = normal(job.surfaces, point.primitive, [point.u, point.v], point.hit);
     let facing = point.to_eye.dot(normal);
     let normal = Vec3 { x: normal.x.mul_sign(facing), y: normal.y.mul_sign(facing), z: normal.z.mul_sign(facing) };
     // The eye mirrored at the surface: a highlight is where a light lies in this direction.
@@ -224,8 +224,7 @@ fn phong<F: Float>(job: &Job<'_>, point: &Points<F>, block: usize, chunk: usize)
 
 /// The vertex normals weighted by the hit's barycentric coordinates, of unit length.
 #[inline(always)]
-fn normal<F: Float>(surfaces: &Surfaces, point: &Points<F>) -> Vec3<F> {
-    let Points { primitive, hit, u, v, .. } = *point;
+pub(super) fn normal<F: Float>(surfaces: &Surfaces, primitive: F::Index, [u, v]: [F; 2], hit: F::Mask) -> Vec3<F> {
     let (triangles, normals) = (&surfaces.triangles, &surfaces.normals);
     let n0: Vec3<F> = words3(normals, word(triangles, primitive, 4, 0, hit), 3, 0, hit);
     let n1 = words3(normals, word(triangles, primitive, 4, 1, hit), 3, 0, hit);
@@ -235,14 +234,14 @@ fn normal<F: Float>(surfaces: &Surfaces, point: &Points<F>) -> Vec3<F> {
 
 /// Word `field` of record `index`, of `size` words each; zero where nothing was hit.
 #[inline(always)]
-fn word<V: Vector>(table: &[V::Lane], index: V::Index, size: u32, field: u32, mask: V::Mask) -> V {
+pub(super) fn word<V: Vector>(table: &[V::Lane], index: V::Index, size: u32, field: u32, mask: V::Mask) -> V {
     let at = index * V::Index::splat(size) + V::Index::splat(field);
     V::gather_masked(table, at, mask, V::splat(V::Lane::default()))
 }
 
 /// Three words from `field` on.
 #[inline(always)]
-fn words3<F: Float>(table: &[f32], index: F::Index, size: u32, field: u32, mask: F::Mask) -> Vec3<F> {
+pub(super) fn words3<F: Float>(table: &[f32], index: F::Index, size: u32, field: u32, mask: F::Mask) -> Vec3<F> {
     Vec3 {
         x: word(table, index, size, field, mask),
         y: word(table, index, size, field + 1, mask),

@@ -1,0 +1,212 @@
+//! Pictures by many rays for each pixel, in waves: all rays of a bounce are traced together, then all hits are shaded together, then those
+//! paths that go on move up.
+
+mod ao;
+mod camera;
+mod columns;
+mod groups;
+mod layers;
+mod lists;
+mod place;
+mod shade;
+mod times;
+mod wave;
+
+pub use camera::Crop;
+pub use layers::Layers;
+pub use times::{Bounce, Means, Observer, Query, Times};
+
+use super::{Frame, Image, Scenery, Settings};
+use crate::Error;
+use crate::lanes::Width;
+use crate::model::{Camera, Model};
+use simd::Level;
+
+/// How light is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Integrator {
+    /// The picture of three passes, one ray for each pixel: [`render`](crate::render::render).
+    Eye {
+        /// Whether lights cast shadows.
+        shadows: bool,
+    },
+    /// Mirrors and glass, every point light, one place on lamps (Whitted 1980, "An Improved Illumination Model for Shaded Display").
+    Whitted {
+        /// Reflections and refractions at most.
+        bounces: u32,
+    },
+    /// How much of the sky each point sees, as grey; what hits nothing is white.
+    AmbientOcclusion {
+        /// How far rays go, in units of the scene; infinite for any distance.
+        distance: f32,
+    },
+    /// Path tracing, with one light source chosen at each hit (Kajiya 1986, "The Rendering Equation").
+    Path(Path),
+}
+
+/// Options of path tracing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Path {
+    /// Reflections at most: with 2, "we shoot one level of primary rays, two reflection rays, and three sets of shadow rays" (Boulos 2008,
+    /// section 5).
+    pub bounces: u32,
+    /// Whether paths end by chance from the third reflection on, the rest weighing more. The mean is that of all `bounces`.
+    pub roulette: bool,
+    /// Whether light is also found by chance, both ways weighted (multiple importance sampling, Veach 1997): less noise where surfaces are
+    /// glossy and lamps are large.
+    pub mis: bool,
+    /// Whether glossy surfaces send rays into the lobe of their coat alone, as in the paper (Boulos 2008, section 5): what their ground reflects
+    /// of other surfaces is missing then.
+    pub coat_alone: bool,
+}
+
+impl Default for Path {
+    fn default() -> Self {
+        Self { bounces: 2, roulette: false, mis: false, coat_alone: false }
+    }
+}
+
+/// A picture to be made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Config {
+    /// How light is followed.
+    pub integrator: Integrator,
+    /// Width of the whole picture in pixels, at most 65,535.
+    pub width: usize,
+    /// Height of the whole picture in pixels, at most 65,535.
+    pub height: usize,
+    /// The part of it that is wanted. Its pixels are those of the whole picture, bit for bit.
+    pub crop: Option<Crop>,
+    /// Paths for each pixel; a single one goes through the middle.
+    pub samples: u32,
+    /// Of the random numbers.
+    pub seed: u64,
+    /// Of what is not done by the method: the same picture by all.
+    pub level: Level,
+    /// [`Width::One`] to do that one ray at a time, in plain `f32`.
+    pub lanes: Width,
+    /// Whether hits are shaded together by the model of their material (Boulos 2008, section 4.6): the same picture, another speed.
+    pub group_shading: bool,
+    /// Paths at once; each takes some 300 bytes.
+    pub batch: usize,
+}
+
+impl Config {
+    /// Path tracing with one sample, at the best level.
+    #[must_use]
+    pub fn new(width: usize, height: usize) -> Self {
+        Self {
+            integrator: Integrator::Path(Path::default()),
+            width,
+            height,
+            crop: None,
+            samples: 1,
+            seed: 0,
+            level: Level::best(),
+            lanes: Width::Auto,
+            group_shading: true,
+            batch: 1 << 20,
+        }
+    }
+
+    /// # Errors
+    /// [`Error::Usage`] for what makes no sense.
+    pub fn validate(&self) -> Result<(), Error> {
+        let usage = |message: String| Err(Error::Usage(message));
+        let most = usize::from(u16::MAX);
+        if !(1..=most).contains(&self.width) || !(1..=most).contains(&self.height) {
+            return usage(format!("a picture of {}x{} pixels: give 1 to {most} each way", self.width, self.height));
+        }
+        if self.samples == 0 || self.batch == 0 {
+            return usage("a picture needs at least one sample for each pixel, and one path at once".into());
+        }
+        if let Some(Crop { x, y, width, height }) = self.crop {
+            let inside = |at: usize, size: usize, all| size > 0 && at.checked_add(size).is_some_and(|end| end <= all);
+            if !inside(x, width, self.width) || !inside(y, height, self.height) {
+                let (w, h) = (self.width, self.height);
+                return usage(format!(
+                    "the part {x},{y},{width},{height} is not inside of a picture of {w}x{h} pixels"
+                ));
+            }
+        }
+        match self.integrator {
+            Integrator::Eye { .. } if self.samples > 1 || self.crop.is_some() => usage(
+                "the picture of three passes has one sample for each pixel and no crop: choose another integrator"
+                    .into(),
+            ),
+            Integrator::Path(Path { mis: true, coat_alone: true, .. }) => usage(
+                "multiple importance sampling needs the whole of glossy surfaces, not their coat alone: choose one"
+                    .into(),
+            ),
+            Integrator::AmbientOcclusion { distance } if distance.is_nan() || distance <= 0.0 => {
+                usage(format!("ambient occlusion up to a distance of {distance}: give a number above 0"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A finished picture.
+#[derive(Debug, Clone)]
+pub struct Rendering {
+    /// The mean of the samples.
+    pub image: Image,
+    /// Of each pixel, how far the mean may be off: the variance of the mean's luminance, estimated from the samples; zero for a single one.
+    pub variance: Vec<f32>,
+    /// What it took.
+    pub times: Times,
+}
+
+/// Makes a picture: the same bits by every method, at every level, and on any number of threads of the current rayon pool.
+///
+/// ```
+/// use tracer::bvh::{BuildConfig, Bvh};
+/// use tracer::method::{Context, Packet, Width};
+/// use tracer::model::Model;
+/// use tracer::progress::Silent;
+/// use tracer::render::{Scenery, integrator::{self, Config, Integrator, Means, Path}};
+///
+/// # fn main() -> Result<(), tracer::Error> {
+/// let (model, _) = Model::open("balls:1", &Silent)?;
+/// let camera = model.camera_or_default();
+/// let scenery = Scenery::new(&model, &camera);
+/// let bvh = Bvh::build(&model.mesh, &BuildConfig::default(), &Silent)?;
+/// let config = Config { samples: 4, ..Config::new(32, 32) };
+/// let method = Packet::new(&bvh, config.level, Width::Auto);
+/// let means = Means { method: &method, cx: &mut Context::default(), observer: None, progress: &Silent };
+/// let rendering = integrator::render(&model, &scenery, camera, &config, means)?;
+/// assert_eq!(rendering.image.pixels.len(), 32 * 32);
+/// assert_eq!(rendering.times.bounces[0].closest, 4 * 32 * 32);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// [`Error::Usage`] for what makes no sense; [`Error::Cancelled`].
+pub fn render(
+    model: &Model,
+    scenery: &Scenery,
+    camera: Camera,
+    config: &Config,
+    means: Means<'_, '_>,
+) -> Result<Rendering, Error> {
+    config.validate()?;
+    camera.validate()?;
+    let Integrator::Eye { shadows } = config.integrator else {
+        return wave::render(scenery, &camera, config, means);
+    };
+    let Config { width, height, level, lanes, .. } = *config;
+    let settings = Settings { width, height, level, lanes, shadows };
+    let mut times = Times::default();
+    let mut frame = Frame::new(model, &scenery.surfaces, camera, settings);
+    times::timed(&mut times.generation, || frame.eye_rays());
+    if let Some(observer) = means.observer {
+        observer(0, Query::Closest, frame.rays());
+    }
+    times::timed(&mut times.traversal, || frame.cast(means.method, means.cx))?;
+    let image = times::timed(&mut times.shading, || frame.shade(means.cx))?;
+    let hits = frame.hits().iter().filter(|hit| !hit.is_miss()).count();
+    let any = if shadows { hits * model.lights_or_headlight(&camera).len() } else { 0 };
+    *times.bounce(0) = Bounce { closest: (width * height) as u64, any: any as u64 };
+    Ok(Rendering { variance: vec![0.0; image.pixels.len()], image, times })
+}

@@ -1,0 +1,275 @@
+//! Waves of paths: trace, shade, move up.
+
+use super::columns::ROWS;
+use super::lists::{CONTRIBUTION, END, Lists, Paths, Shadows, fill};
+use super::shade::{Portion, Rules, Scratch, Shaded, Wave};
+use super::times::timed;
+use super::{Config, Crop, Integrator, Means, Query, Rendering, Times, ao, camera, shade};
+use crate::Error;
+use crate::geometry::{HitBatch, RayBatch};
+use crate::method::BitVec;
+use crate::model::Camera;
+use crate::render::{Image, Sampler, Scenery};
+use rayon::prelude::*;
+
+pub(super) fn render(
+    scenery: &Scenery,
+    camera: &Camera,
+    config: &Config,
+    means: Means<'_, '_>,
+) -> Result<Rendering, Error> {
+    let whole = Crop { x: 0, y: 0, width: config.width, height: config.height };
+    let crop = config.crop.unwrap_or(whole);
+    let pixels = camera::pixels(&crop);
+    let units = pixels.len() as u64 * u64::from(config.samples);
+    means.progress.stage("render", units);
+    let mut film = Film::new(crop);
+    let mut waves = Waves { scenery, camera, config, means, times: Times::default(), memory: Memory::default() };
+    for pixels in pixels.chunks(config.batch) {
+        for sample in 0..config.samples {
+            waves.sample(pixels, sample)?;
+            let radiance = &waves.memory.radiance;
+            timed(&mut waves.times.shading, || film.add(pixels, radiance));
+            let mrays = waves.times.rays() as f64 * 1e-6 / waves.times.total().as_secs_f64().max(1e-9);
+            waves.means.progress.note(&format!("{mrays:.1} Mrays/s"));
+            waves.means.progress.advance(pixels.len() as u64);
+            waves.means.progress.check()?;
+        }
+    }
+    Ok(film.finish(config.samples, waves.times))
+}
+
+/// Sums over samples, in their order.
+struct Film {
+    crop: Crop,
+    sums: Vec<[f32; 3]>,
+    squares: Vec<f32>,
+}
+
+impl Film {
+    fn new(crop: Crop) -> Self {
+        let n = crop.width * crop.height;
+        Self { crop, sums: vec![[0.0; 3]; n], squares: vec![0.0; n] }
+    }
+
+    fn add(&mut self, pixels: &[u32], radiance: &[[f32; 3]]) {
+        for (&pixel, rgb) in pixels.iter().zip(radiance) {
+            let (x, y) = ((pixel & 0xffff) as usize - self.crop.x, (pixel >> 16) as usize - self.crop.y);
+            let at = y * self.crop.width + x;
+            let sum = &mut self.sums[at];
+            *sum = [sum[0] + rgb[0], sum[1] + rgb[1], sum[2] + rgb[2]];
+            let luminance = luminance(*rgb);
+            self.squares[at] += luminance * luminance;
+        }
+    }
+
+    fn finish(self, samples: u32, times: Times) -> Rendering {
+        let n = samples as f32;
+        let mean: Vec<[f32; 3]> = self.sums.iter().map(|sum| sum.map(|c| c / n)).collect();
+        let spread = |(square, mean): (&f32, &[f32; 3])| {
+            let luminance = luminance(*mean);
+            (square / n - luminance * luminance).max(0.0) / (n - 1.0).max(1.0)
+        };
+        let variance = self.squares.iter().zip(&mean).map(spread).collect();
+        let image = Image { width: self.crop.width, height: self.crop.height, pixels: mean };
+        Rendering { image, variance, times }
+    }
+}
+
+fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    r * 0.2126 + g * 0.7152 + b * 0.0722
+}
+
+/// What is used again by each wave.
+#[derive(Debug)]
+struct Memory {
+    radiance: Vec<[f32; 3]>,
+    rays: RayBatch,
+    paths: Paths,
+    shadows: Shadows,
+    shadow_rays: RayBatch,
+    hits: HitBatch,
+    occluded: BitVec,
+    starts: Vec<f32>,
+    ends: Vec<f32>,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self {
+            radiance: Vec::new(),
+            rays: RayBatch::new(),
+            paths: Lists::new(),
+            shadows: Lists::new(),
+            shadow_rays: RayBatch::new(),
+            hits: HitBatch::new(),
+            occluded: BitVec::new(),
+            starts: Vec::new(),
+            ends: Vec::new(),
+        }
+    }
+}
+
+struct Waves<'a, 'b, 'c> {
+    scenery: &'a Scenery,
+    camera: &'a Camera,
+    config: &'a Config,
+    means: Means<'b, 'c>,
+    times: Times,
+    memory: Memory,
+}
+
+impl Waves<'_, '_, '_> {
+    /// One sample of these pixels: the light that comes to each.
+    fn sample(&mut self, pixels: &[u32], sample: u32) -> Result<(), Error> {
+        let memory = &mut self.memory;
+        timed(&mut self.times.generation, || {
+            memory.rays = camera::rays(self.config, self.camera, pixels, sample);
+            memory.radiance.clear();
+            memory.radiance.resize(pixels.len(), [0.0; 3]);
+        });
+        match self.config.integrator {
+            Integrator::AmbientOcclusion { distance } => self.occlusion(pixels, sample, distance),
+            _ => self.paths(pixels, sample),
+        }
+    }
+
+    fn occlusion(&mut self, pixels: &[u32], sample: u32, distance: f32) -> Result<(), Error> {
+        self.closest(0)?;
+        let Config { seed, level, lanes, .. } = *self.config;
+        let Memory { rays, hits, radiance, shadows, .. } = &mut self.memory;
+        timed(&mut self.times.shading, || {
+            let portions = pixels.par_chunks(ROWS).enumerate().map(|(i, pixels)| {
+                let blocks = i * ROWS / 16..(i * ROWS + pixels.len()).div_ceil(16);
+                let portion = ao::Portion {
+                    scenery: self.scenery,
+                    sampler: Sampler::new(seed),
+                    sample,
+                    distance,
+                    pixels,
+                    first: i * ROWS,
+                    rays: &rays.blocks()[blocks.clone()],
+                    hits: &hits.blocks()[blocks],
+                };
+                ao::shade(level, lanes, portion)
+            });
+            let shaded: Vec<_> = portions.collect();
+            shadows.clear();
+            for (light, more) in &shaded {
+                add(radiance, light);
+                shadows.append(more);
+            }
+        });
+        self.any(0)
+    }
+
+    fn paths(&mut self, pixels: &[u32], sample: u32) -> Result<(), Error> {
+        let (bounces, rules) = rules(self.config);
+        timed(&mut self.times.generation, || self.memory.paths = Lists::of_eye(pixels.len()));
+        for depth in 0..=bounces {
+            self.closest(depth as usize)?;
+            self.shade(pixels, sample, depth, Rules { last: depth == bounces, ..rules })?;
+            self.any(depth as usize)?;
+            if self.memory.paths.is_empty() {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The first hits of the rays.
+    fn closest(&mut self, depth: usize) -> Result<(), Error> {
+        let (Memory { rays, hits, .. }, means) = (&mut self.memory, &mut self.means);
+        self.times.bounce(depth).closest += rays.len() as u64;
+        if let Some(observer) = &mut means.observer {
+            observer(depth, Query::Closest, rays);
+        }
+        timed(&mut self.times.traversal, || means.method.closest(rays, hits, means.cx))
+    }
+
+    /// Shades the hits; what comes of it are the next rays and those to lights.
+    fn shade(&mut self, pixels: &[u32], sample: u32, depth: u32, rules: Rules) -> Result<(), Error> {
+        let Config { seed, level, lanes, .. } = *self.config;
+        let Memory { rays, hits, radiance, shadows, paths, starts, ends, .. } = &mut self.memory;
+        self.means.cx.check()?;
+        timed(&mut self.times.shading, || {
+            let sampler = Sampler::new(seed);
+            let wave = Wave { scenery: self.scenery, sampler, sample, depth, rules, pixels, paths };
+            let len = rays.len();
+            let shade = |scratch: &mut Scratch, first: usize| {
+                let blocks = first / 16..(first + ROWS).min(len).div_ceil(16);
+                let (rays, hits) = (&rays.blocks()[blocks.clone()], &hits.blocks()[blocks]);
+                let portion = Portion { wave: &wave, first, len: (len - first).min(ROWS), rays, hits, scratch };
+                shade::shade(level, lanes, portion)
+            };
+            let portions = (0..len.div_ceil(ROWS)).into_par_iter().map(|i| i * ROWS);
+            let shaded: Vec<Shaded> = portions.map_init(Scratch::new, shade).collect();
+
+            paths.clear();
+            shadows.clear();
+            for portion in &shaded {
+                add(radiance, &portion.light);
+                shadows.append(&portion.shadows);
+                paths.append(&portion.paths);
+            }
+            ends.clear();
+            ends.resize(paths.len(), f32::INFINITY);
+            fill(rays, paths, starts, ends);
+        });
+        Ok(())
+    }
+
+    /// The light along rays that nothing is in the way of.
+    fn any(&mut self, depth: usize) -> Result<(), Error> {
+        let (memory, means) = (&mut self.memory, &mut self.means);
+        let Memory { radiance, shadows, shadow_rays, occluded, starts, .. } = memory;
+        if shadows.is_empty() {
+            return Ok(());
+        }
+        timed(&mut self.times.shading, || fill(shadow_rays, shadows, starts, shadows.list(END)));
+        self.times.bounce(depth).any += shadow_rays.len() as u64;
+        if let Some(observer) = &mut means.observer {
+            observer(depth, Query::Any, shadow_rays);
+        }
+        timed(&mut self.times.traversal, || means.method.any(shadow_rays, occluded, means.cx))?;
+        timed(&mut self.times.shading, || {
+            let list = |i| shadows.list(CONTRIBUTION + i);
+            let (r, g, b) = (list(0), list(1), list(2));
+            for i in 0..shadows.len() {
+                if !occluded.get(i) {
+                    let sum = &mut radiance[shadows.slots[i] as usize];
+                    *sum = [sum[0] + r[i], sum[1] + g[i], sum[2] + b[i]];
+                }
+            }
+        });
+        Ok(())
+    }
+}
+
+fn rules(config: &Config) -> (u32, Rules) {
+    let none = Rules {
+        whitted: false,
+        last: false,
+        mis: false,
+        roulette: false,
+        coat_alone: false,
+        group: config.group_shading,
+    };
+    match config.integrator {
+        Integrator::Path(path) => {
+            let super::Path { bounces, roulette, mis, coat_alone } = path;
+            (bounces, Rules { mis, roulette, coat_alone, ..none })
+        }
+        Integrator::Whitted { bounces } => (bounces, Rules { whitted: true, ..none }),
+        Integrator::Eye { .. } | Integrator::AmbientOcclusion { .. } => (0, none),
+    }
+}
+
+/// Adds light to the slots it belongs to.
+fn add(radiance: &mut [[f32; 3]], light: &Lists<3>) {
+    let (r, g, b) = (light.list(0), light.list(1), light.list(2));
+    for i in 0..light.len() {
+        let sum = &mut radiance[light.slots[i] as usize];
+        *sum = [sum[0] + r[i], sum[1] + g[i], sum[2] + b[i]];
+    }
+}
