@@ -108,3 +108,89 @@ fn generated_scenes_are_read_back_as_they_were() {
     assert!(folder.read("hair.ply").starts_with(b"ply\n"));
     assert_eq!(folder.files(), ["balls.png", "copy.mtl", "copy.obj", "copy.png", "hair.ply"]);
 }
+
+/// A red and a green wall under a lamp, and a mirror.
+const ROOM: (&str, &str) = (
+    "mtllib room.mtl\nv -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 2 -1\nv 1 2 -1\nv 1 2 1\nv -1 2 1\nv -.5 1.9 -.5\nv .5 1.9 -.5\nv .5 1.9 .5\n\
+     v -.5 1.9 .5\nusemtl red\nf 1 2 3 4\nf 1 2 6 5\nusemtl green\nf 1 4 8 5\nusemtl mirror\nf 2 3 7 6\nusemtl lamp\nf 9 10 11 12\n",
+    "newmtl red\nKd .7 .1 .1\nnewmtl green\nKd .1 .7 .1\nnewmtl mirror\nKs .9 .9 .9\nillum 3\nnewmtl lamp\nKd 0 0 0\nKe 9 9 9\n",
+);
+const VIEW: &str = "--camera 0.2,1,4/0,1,0 --size 32x24";
+
+/// One picture by every method and level; more samples, less noise; a part of it.
+#[test]
+fn light_by_whitted_and_paths() {
+    let folder = Folder::with("room.obj", ROOM.0);
+    folder.write("room.mtl", ROOM.1);
+    for options in
+        ["path --samples 4 --bounces 3 --mis --roulette --seed 5", "whitted --samples 2", "ao --distance 0.5"]
+    {
+        let command = format!("render room.obj {VIEW} --json -o x.png --integrator {options}");
+        let report = folder.json(&command);
+        assert!(report["rays"].as_u64().is_some_and(|n| n > 32 * 24) && report["bounces"][0][1] != 0, "{report}");
+        for level in levels() {
+            for method in ["packet", "single8"] {
+                let again = folder.json(&format!("{command} --level {level} --method {method} --threads 1"));
+                assert_eq!(again["image_hash"], report["image_hash"], "{options}, {level}, {method}");
+            }
+        }
+    }
+    let hash =
+        |options: &str| folder.json(&format!("render room.obj {VIEW} --json -o x.png --integrator path {options}"));
+    let plain = hash("--samples 2");
+    assert_eq!(hash("--samples 2 --ungrouped")["image_hash"], plain["image_hash"]);
+    assert_ne!(hash("--samples 2 --seed 1")["image_hash"], plain["image_hash"]);
+    assert_eq!(hash("--samples 2 --crop 3,4,5,6")["width"], 5);
+    let out = folder.run(&format!("render room.obj {VIEW} -o a.png --integrator path"));
+    assert!(out.contains("rays to lights") && out.contains("wrote     a.png"), "{out}");
+    for curve in ["reinhard", "aces"] {
+        folder.run(&format!("render room.obj {VIEW} -o b.png --integrator path --tone {curve} --exposure -1"));
+        assert!(folder.read("a.png") != folder.read("b.png"));
+    }
+}
+
+#[test]
+fn layers_in_exr() {
+    use exr::prelude::*;
+    let folder = Folder::with("room.obj", ROOM.0);
+    folder.write("room.mtl", ROOM.1);
+    folder.run(&format!("render room.obj {VIEW} -o out.exr --integrator path --samples 4 --layers"));
+    let reader = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes();
+    let image = reader.from_buffered(Cursor::new(folder.read("out.exr"))).expect("a picture");
+    let channels = &image.layer_data.channel_data.list;
+    let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
+    let expected = "B G R Z albedo.B albedo.G albedo.R material.ID normal.X normal.Y normal.Z primitive.ID variance.Y";
+    assert_eq!(names.join(" "), expected);
+    let middle = 12 * 32 + 16;
+    let at =
+        |name: &str| channels.iter().find(|c| c.name.eq(name)).expect(name).sample_data.values_as_f32().nth(middle);
+    // The wall at the back, from 4 in front of the room's middle.
+    let (z, normal) = (at("Z").expect("a pixel"), at("normal.Z").expect("a pixel"));
+    assert!((z - 5.0).abs() < 0.1 && normal == 1.0 && at("albedo.R") == Some(0.7), "{z} {normal}");
+    assert_eq!((at("material.ID"), at("primitive.ID").map(|id| id == 2.0 || id == 3.0)), (Some(0.0), Some(true)));
+    assert!(at("variance.Y").is_some_and(|v| v >= 0.0));
+}
+
+#[test]
+fn options_of_light_that_make_no_sense() {
+    let folder = Folder::with("s.obj", SQUARES);
+    for (options, words) in [
+        ("--samples 4", &["--samples", "whitted, ao and path"][..]),
+        ("--mis", &["--mis", "--integrator path"]),
+        ("--integrator whitted --roulette", &["--roulette", "--integrator path"]),
+        ("--integrator ao --bounces 3", &["--bounces"]),
+        ("--integrator path --distance 3", &["--distance", "--integrator ao"]),
+        ("--integrator path --shadows", &["--shadows", "always"]),
+        ("--integrator ao --distance 0", &["above 0"]),
+        ("--integrator path --crop 0,0,9,9 --size 8x8", &["0,0,9,9", "not inside"]),
+        ("--integrator path --crop 0,0,9", &["four whole numbers"]),
+        ("--integrator path --samples 0", &["samples"]),
+        ("--integrator path --tone filmic", &["none, reinhard, aces"]),
+        ("--exposure 1e9", &["--exposure"]),
+        ("-o x.exr --tone aces", &["--tone", ".png"]),
+        ("--integrator path --layers", &["--layers", ".exr"]),
+        ("--seed 3", &["--seed"]),
+    ] {
+        folder.fails(&format!("render s.obj {options}"), 2, words);
+    }
+}

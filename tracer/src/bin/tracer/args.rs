@@ -36,7 +36,7 @@ pub struct BuildOptions {
     /// How the tree is built
     #[arg(long, value_name = "BUILDER", default_value_t, value_enum)]
     pub build: Builder,
-    /// Seed of the order of insertion, for --build insertion [default: 0]
+    /// Seed of the order of insertion, for --build insertion; to render with random numbers, their seed too [default: 0]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
 }
@@ -47,8 +47,8 @@ pub struct BuildOptions {
 pub struct TraceOptions {
     #[command(flatten)]
     pub level: LevelOption,
-    /// How hits are found: the results are the same, the speed is not [default: packet to render; auto to trace, unless --width or
-    /// --slab is given]
+    /// How hits are found: the results are the same, the speed is not [default: packet to render by eye; auto to trace and for
+    /// other integrators, unless --width or --slab is given]
     #[arg(long, value_name = "METHOD", value_enum)]
     pub method: Option<MethodChoice>,
     /// Rays per packet: auto, 1, 4, 8 or 16

@@ -88,7 +88,7 @@ impl Progress for Console {
         let (bar, template) = if total == 0 {
             (ProgressBar::new_spinner(), "{prefix:>8} {spinner} {elapsed}")
         } else {
-            (ProgressBar::new(total), "{prefix:>8} [{bar:40}] {percent:>3}% {elapsed}")
+            (ProgressBar::new(total), "{prefix:>8} [{bar:40}] {percent:>3}% {elapsed}, {eta} left {msg}")
         };
         let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
         bar.set_style(style.progress_chars("=> "));
@@ -100,6 +100,12 @@ impl Progress for Console {
     fn advance(&self, n: u64) {
         if let Some(bar) = self.bar().as_ref() {
             bar.inc(n);
+        }
+    }
+
+    fn note(&self, text: &str) {
+        if let Some(bar) = self.bar().as_ref() {
+            bar.set_message(text.to_owned());
         }
     }
 

@@ -6,6 +6,7 @@ mod compare;
 mod console;
 mod generate;
 mod info;
+mod light;
 mod machine;
 mod method;
 mod npy;

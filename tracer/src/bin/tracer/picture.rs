@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use tracer::Error;
 use tracer::output::write_atomically;
 use tracer::render::Image;
+use tracer::render::integrator::Layers;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -38,6 +39,38 @@ pub fn write(image: &Image, path: &Path) -> Result<usize, Error> {
     let kind = Kind::of(path)?;
     let encoded = kind.encode(image);
     let bytes = encoded.map_err(|source| Error::Io { action: "encode", path: PathBuf::from(path), source })?;
+    write_atomically(path, |out| out.write_all(&bytes))?;
+    Ok(bytes.len())
+}
+
+/// The light and what else is known of each pixel, in one layer with named channels (.exr): R G B; Y of the variance; Z, the distance; normal,
+/// albedo; numbers of triangles and materials.
+pub fn write_layers(image: &Image, variance: Vec<f32>, layers: Layers, path: &Path) -> Result<usize, Error> {
+    use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, WritableImage};
+    let column = |pixels: &[[f32; 3]], k: usize| FlatSamples::F32(pixels.iter().map(|p| p[k]).collect());
+    let mut channels = exr::prelude::SmallVec::new();
+    for (names, pixels) in [
+        (["R", "G", "B"], &image.pixels),
+        (["albedo.R", "albedo.G", "albedo.B"], &layers.albedo),
+        (["normal.X", "normal.Y", "normal.Z"], &layers.normal),
+    ] {
+        for (k, name) in names.into_iter().enumerate() {
+            channels.push(AnyChannel::new(name, column(pixels, k)));
+        }
+    }
+    channels.push(AnyChannel::new("Z", FlatSamples::F32(layers.depth)));
+    channels.push(AnyChannel::new("variance.Y", FlatSamples::F32(variance)));
+    channels.push(AnyChannel::new("primitive.ID", FlatSamples::U32(layers.primitive)));
+    channels.push(AnyChannel::new("material.ID", FlatSamples::U32(layers.material)));
+    let size = (image.width, image.height);
+    let layer = Layer::new(size, LayerAttributes::default(), Encoding::default(), AnyChannels::sort(channels));
+    let mut bytes = Vec::new();
+    let encoded = exr::image::Image::from_layer(layer).write().to_buffered(Cursor::new(&mut bytes));
+    let encoded = encoded.map_err(|e| match e {
+        exr::error::Error::Io(e) => e,
+        e => io::Error::other(e),
+    });
+    encoded.map_err(|source| Error::Io { action: "encode", path: PathBuf::from(path), source })?;
     write_atomically(path, |out| out.write_all(&bytes))?;
     Ok(bytes.len())
 }

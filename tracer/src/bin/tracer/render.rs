@@ -2,6 +2,7 @@
 
 use crate::args::{self, BuildOptions, PictureOptions, TraceOptions};
 use crate::console::Console;
+use crate::light::{self, LightOptions};
 use crate::method::MethodChoice;
 use crate::picture;
 use crate::workload::{Workload, mrays_per_s, ms};
@@ -22,22 +23,27 @@ Examples:
   tracer render                                     the built-in sphereflake to balls.png
   tracer render atrium.obj.zst --size 1920x1080 --camera -60,86,10/0,40,0 --shadows
   tracer render rings --method auto                 as many rays together as agree
-  tracer render tree:8 -o tree.exr --level sse2 --width 4 --threads 1 --json")]
+  tracer render tree:8 -o tree.exr --level sse2 --width 4 --threads 1 --json
+  tracer render room.obj --integrator path --samples 64 --bounces 4 --mis --method auto --tone aces
+  tracer render balls --integrator whitted --samples 4 --method auto
+  tracer render atrium.obj --integrator ao --samples 16 --distance 100 --method auto")]
 pub struct Args {
     /// A file or a built-in scene [default: balls]
     scene: Option<String>,
     /// File to write: .png (sRGB, 8 bits) or .exr (linear, 32-bit floats) [default: the scene's name with .png]
     #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    pub output: Option<PathBuf>,
     /// Print the summary as JSON
     #[arg(long)]
-    json: bool,
+    pub json: bool,
     #[command(flatten)]
-    picture: PictureOptions,
+    pub picture: PictureOptions,
     #[command(flatten)]
-    build: BuildOptions,
+    pub light: LightOptions,
     #[command(flatten)]
-    trace: TraceOptions,
+    pub build: BuildOptions,
+    #[command(flatten)]
+    pub trace: TraceOptions,
 }
 
 #[derive(Serialize)]
@@ -76,12 +82,18 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
     }
     args.trace.level.choose()?;
     args.trace.method(MethodChoice::Packet)?;
-    args.build.config()?;
+    args.light.check(args)?;
+    let build = args.light.without_own_seed(&args.build);
+    build.config()?;
     args.picture.size.check()?;
     let pool = args::pool(args.trace.threads.threads)?;
     pool.install(|| {
-        let work = Workload::load(args.scene.as_deref().unwrap_or("balls"), &args.build, console)?;
-        picture(args, &work, console)
+        let work = Workload::load(args.scene.as_deref().unwrap_or("balls"), &build, console)?;
+        if args.light.integrator == light::Choice::Eye {
+            picture(args, &work, console)
+        } else {
+            light::picture(args, &work, console)
+        }
     })?;
     Ok(ExitCode::SUCCESS)
 }
@@ -116,7 +128,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
 
     let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
     console.check()?;
-    let output_bytes = picture::write(&image, &output)?;
+    let output_bytes = picture::write(&args.light.developed(&image, &output), &output)?;
     let rays = size.pixels() + if shadows { hits * scene.lights_or_headlight(&camera).len() } else { 0 };
     let report = Report {
         scene: scene.name.clone(),
