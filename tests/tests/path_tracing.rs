@@ -2,6 +2,7 @@
 //! says how much there is.
 
 use simd::Level;
+use std::time::Duration;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig};
 use tracer::method::{Auto, Context, Method, Order, Packet, Single, Width};
 use tracer::model::{Camera, Light, Material, Mesh, Model, Reflection, builtin};
@@ -184,6 +185,17 @@ fn crops_and_seeds() {
         }
     }
     assert_ne!(render(&model, &Config { seed: 1, ..config }).image.hash(), whole.hash());
+}
+
+/// A limit of time ends it after a whole sample.
+#[test]
+fn time_limit() {
+    let model = mixed();
+    let config = Config { samples: u32::MAX, time_limit: Some(Duration::from_millis(30)), ..Config::new(16, 12) };
+    let rendering = render(&model, &config);
+    assert!(rendering.samples > 1 && rendering.samples < u32::MAX);
+    let again = render(&model, &Config { samples: rendering.samples, time_limit: None, ..config });
+    assert_eq!(again.image.hash(), rendering.image.hash());
 }
 
 /// In a room whose walls shine and reflect alike everything is as bright: 1 + r + r^2 + ... up to the light of the last hit.

@@ -141,6 +141,7 @@ fn light_by_whitted_and_paths() {
     assert_eq!(hash("--samples 2 --ungrouped")["image_hash"], plain["image_hash"]);
     assert_ne!(hash("--samples 2 --seed 1")["image_hash"], plain["image_hash"]);
     assert_eq!(hash("--samples 2 --crop 3,4,5,6")["width"], 5);
+    assert_eq!(hash("--samples 1000000 --time-limit 0")["samples"], 1);
     let out = folder.run(&format!("render room.obj {VIEW} -o a.png --integrator path"));
     assert!(out.contains("rays to lights") && out.contains("wrote     a.png"), "{out}");
     for curve in ["reinhard", "aces"] {
@@ -187,6 +188,8 @@ fn options_of_light_that_make_no_sense() {
         ("--integrator path --samples 0", &["samples"]),
         ("--integrator path --tone filmic", &["none, reinhard, aces"]),
         ("--exposure 1e9", &["--exposure"]),
+        ("--integrator path --time-limit=-1", &["--time-limit"]),
+        ("--integrator path --time-limit nan", &["--time-limit"]),
         ("-o x.exr --tone aces", &["--tone", ".png"]),
         ("--integrator path --layers", &["--layers", ".exr"]),
         ("--seed 3", &["--seed"]),

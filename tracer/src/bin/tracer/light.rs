@@ -12,6 +12,7 @@ use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::time::Duration;
 use tracer::Error;
 use tracer::method::Context;
 use tracer::render::integrator::{self, Config, Crop, Integrator, Layers, Means, Rendering};
@@ -27,6 +28,9 @@ pub struct LightOptions {
     /// Paths for each pixel, for whitted, ao and path [default: 1, through its middle]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
+    /// Begin no sample after so many seconds, for whitted, ao and path
+    #[arg(long, value_name = "SECONDS")]
+    time_limit: Option<f64>,
     /// Reflections at most [default: 2 for path, 5 for whitted]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(..=1000))]
     bounces: Option<u32>,
@@ -100,6 +104,12 @@ impl LightOptions {
                 integrator != Choice::Eye,
                 "is for --integrator whitted, ao and path",
             ),
+            (
+                self.time_limit.is_some(),
+                "--time-limit",
+                integrator != Choice::Eye,
+                "is for --integrator whitted, ao and path",
+            ),
             (self.crop.is_some(), "--crop", integrator != Choice::Eye, "is for --integrator whitted, ao and path"),
             (self.layers, "--layers", integrator != Choice::Eye, "is for --integrator whitted, ao and path"),
             (self.ungrouped, "--ungrouped", self.has_bounces(), "is for --integrator whitted and path"),
@@ -122,6 +132,9 @@ impl LightOptions {
         let exr = args.output.as_deref().map(Kind::of).transpose()? == Some(Kind::Exr);
         if exr && (self.tone.is_some() || self.exposure.is_some()) {
             return Err(Error::Usage("--tone and --exposure are for .png: an .exr holds the light itself".into()));
+        }
+        if self.time_limit.is_some_and(|seconds| !(0.0..=1e9).contains(&seconds)) {
+            return Err(Error::Usage("--time-limit: give a number of seconds from 0 to 1e9".into()));
         }
         if self.layers && !exr {
             return Err(Error::Usage("--layers is for .exr: name one with -o".into()));
@@ -173,6 +186,7 @@ impl LightOptions {
             integrator,
             crop: self.crop.map(|part| part.0),
             samples: self.samples.unwrap_or(1),
+            time_limit: self.time_limit.map(Duration::from_secs_f64),
             seed: args.build.seed.unwrap_or(0),
             level,
             lanes: args.trace.width,
@@ -223,7 +237,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let method = choice.over(&work.bvh, &tree, config.level, config.lanes, args.trace.form());
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     let means = Means { method: &*method, cx: &mut cx, observer: None, progress: console };
-    let Rendering { image, times, variance } = integrator::render(scene, &scenery, camera, &config, means)?;
+    let Rendering { image, samples, times, variance } = integrator::render(scene, &scenery, camera, &config, means)?;
     console.clear();
 
     let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
@@ -245,7 +259,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         height: image.height,
         camera: camera.to_string(),
         integrator: args.light.integrator.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default(),
-        samples: config.samples,
+        samples,
         seed: config.seed,
         level: config.level.to_string(),
         method: choice.name(),

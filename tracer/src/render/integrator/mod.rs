@@ -21,6 +21,7 @@ use crate::Error;
 use crate::lanes::Width;
 use crate::model::{Camera, Model};
 use simd::Level;
+use std::time::Duration;
 
 /// How light is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,6 +80,8 @@ pub struct Config {
     pub crop: Option<Crop>,
     /// Paths for each pixel; a single one goes through the middle.
     pub samples: u32,
+    /// No sample is begun after this time; the first is always taken. The picture is that of as many samples, bit for bit.
+    pub time_limit: Option<Duration>,
     /// Of the random numbers.
     pub seed: u64,
     /// Of what is not done by the method: the same picture by all.
@@ -101,6 +104,7 @@ impl Config {
             height,
             crop: None,
             samples: 1,
+            time_limit: None,
             seed: 0,
             level: Level::best(),
             lanes: Width::Auto,
@@ -151,6 +155,8 @@ impl Config {
 pub struct Rendering {
     /// The mean of the samples.
     pub image: Image,
+    /// Their number: less than was asked for where a time limit ended it.
+    pub samples: u32,
     /// Of each pixel, how far the mean may be off: the variance of the mean's luminance, estimated from the samples; zero for a single one.
     pub variance: Vec<f32>,
     /// What it took.
@@ -208,5 +214,5 @@ pub fn render(
     let hits = frame.hits().iter().filter(|hit| !hit.is_miss()).count();
     let any = if shadows { hits * model.lights_or_headlight(&camera).len() } else { 0 };
     *times.bounce(0) = Bounce { closest: (width * height) as u64, any: any as u64 };
-    Ok(Rendering { variance: vec![0.0; image.pixels.len()], image, times })
+    Ok(Rendering { variance: vec![0.0; image.pixels.len()], image, samples: 1, times })
 }

@@ -11,6 +11,7 @@ use crate::method::BitVec;
 use crate::model::Camera;
 use crate::render::{Image, Sampler, Scenery};
 use rayon::prelude::*;
+use std::time::Instant;
 
 pub(super) fn render(
     scenery: &Scenery,
@@ -25,9 +26,11 @@ pub(super) fn render(
     means.progress.stage("render", units);
     let mut film = Film::new(crop);
     let mut waves = Waves { scenery, camera, config, means, times: Times::default(), memory: Memory::default() };
-    for pixels in pixels.chunks(config.batch) {
-        for sample in 0..config.samples {
-            waves.sample(pixels, sample)?;
+    let start = Instant::now();
+    let mut done = 0;
+    while done < config.samples && (done == 0 || config.time_limit.is_none_or(|limit| start.elapsed() < limit)) {
+        for pixels in pixels.chunks(config.batch) {
+            waves.sample(pixels, done)?;
             let radiance = &waves.memory.radiance;
             timed(&mut waves.times.shading, || film.add(pixels, radiance));
             let mrays = waves.times.rays() as f64 * 1e-6 / waves.times.total().as_secs_f64().max(1e-9);
@@ -35,8 +38,9 @@ pub(super) fn render(
             waves.means.progress.advance(pixels.len() as u64);
             waves.means.progress.check()?;
         }
+        done += 1;
     }
-    Ok(film.finish(config.samples, waves.times))
+    Ok(film.finish(done, waves.times))
 }
 
 /// Sums over samples, in their order.
@@ -72,7 +76,7 @@ impl Film {
         };
         let variance = self.squares.iter().zip(&mean).map(spread).collect();
         let image = Image { width: self.crop.width, height: self.crop.height, pixels: mean };
-        Rendering { image, variance, times }
+        Rendering { image, samples, variance, times }
     }
 }
 
