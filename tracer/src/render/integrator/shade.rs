@@ -5,14 +5,14 @@ use super::groups::{Groups, NOTHING, Step};
 use super::lists::{DENSITY, Lists, Paths, Shadows, THROUGHPUT, ten};
 use super::place::Place;
 use crate::geometry::{HitBlock, RayBlock, Vec3};
-use crate::lanes::{self, Lanes};
+use crate::lanes::{self, Lanes, Width};
 use crate::model::Light;
 use crate::render::Sampler;
 use crate::render::lights::{LightSample, Lights};
 use crate::render::material::{Branch, Frame, Model, Options, Parameters};
 use crate::render::scenery::Scenery;
 use crate::render::shade::{word, words3};
-use simd::{Float, Mask, Vector};
+use simd::{Float, Level, Mask, Vector};
 use std::f32::consts::PI;
 
 /// What is done at each hit.
@@ -63,7 +63,7 @@ pub(super) struct Scratch {
     groups: Groups,
 }
 
-/// Columns of [`Scratch::place`]; what is left of a ray's start is where the surface is.
+/// Columns of [`Scratch::place`].
 const POSITION: usize = 0;
 const FACE: usize = 3;
 const NORMAL: usize = 6;
@@ -99,32 +99,40 @@ pub(super) struct Portion<'a> {
     pub(super) scratch: &'a mut Scratch,
 }
 
-impl Lanes for Portion<'_> {
-    type Output = Shaded;
+/// The steps of the work on a portion are dispatched one by one: one function of all of them takes long to compile, and megabytes of stack where
+/// nothing is optimized.
+struct Places<'a, 'b>(&'a mut Portion<'b>, &'a mut Lists<3>);
+
+impl Lanes for Places<'_, '_> {
+    type Output = ();
 
     #[inline(always)]
-    fn run<F: Float>(mut self) -> Shaded {
-        let mut shaded = Shaded { light: Lists::new(), shadows: Lists::new(), paths: Lists::new() };
-        let Wave { scenery, rules, .. } = *self.wave;
-        shaded.light.reserve(self.len);
-        self.places::<F>(&mut shaded.light);
-        self.scratch.groups.set::<F>(&self.scratch.models, self.len, rules.group);
-        // One call of each step, as each is compiled into this function whole.
-        let points = if rules.whitted { scenery.points.len() } else { 0 };
-        let others = if rules.whitted { &scenery.lamps } else { &scenery.lights };
-        for number in 0..=points {
-            let source = scenery.points[..points].get(number).copied().map_or(Source::Any(others), Source::Point);
-            self.lights::<F>(source, &mut shaded.shadows);
-        }
-        let branches: &[Branch] = match (rules.last, rules.whitted) {
-            (true, _) => &[],
-            (_, true) => &[Branch::Reflected, Branch::Refracted],
-            (_, false) => &[Branch::Random],
-        };
-        for &branch in branches {
-            self.directions::<F>(branch, &mut shaded.paths);
-        }
-        shaded
+    fn run<F: Float>(self) {
+        self.0.places::<F>(self.1);
+        let (scratch, len) = (&mut *self.0.scratch, self.0.len);
+        scratch.groups.set::<F>(&scratch.models, len, self.0.wave.rules.group);
+    }
+}
+
+struct ToLights<'a, 'b>(&'a mut Portion<'b>, Source<'a>, &'a mut Shadows);
+
+impl Lanes for ToLights<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Float>(self) {
+        self.0.lights::<F>(self.1, self.2);
+    }
+}
+
+struct Onwards<'a, 'b>(&'a mut Portion<'b>, Branch, &'a mut Paths);
+
+impl Lanes for Onwards<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Float>(self) {
+        self.0.directions::<F>(self.1, self.2);
     }
 }
 
@@ -428,6 +436,23 @@ fn throughput<F: Float>(lists: [&[f32]; 3], rows: Rows<F>) -> Vec3<F> {
 }
 
 /// Shades a portion.
-pub(super) fn shade(level: simd::Level, width: lanes::Width, portion: Portion<'_>) -> Shaded {
-    lanes::run_long(level, width, portion)
+pub(super) fn shade(level: Level, width: Width, mut portion: Portion<'_>) -> Shaded {
+    let mut shaded = Shaded { light: Lists::new(), shadows: Lists::new(), paths: Lists::new() };
+    let Wave { scenery, rules, .. } = *portion.wave;
+    shaded.light.reserve(portion.len);
+    lanes::run_long(level, width, Places(&mut portion, &mut shaded.light));
+    let (points, others) =
+        if rules.whitted { (&scenery.points[..], &scenery.lamps) } else { (&[][..], &scenery.lights) };
+    for source in points.iter().map(|&point| Source::Point(point)).chain([Source::Any(others)]) {
+        lanes::run_long(level, width, ToLights(&mut portion, source, &mut shaded.shadows));
+    }
+    let branches: &[Branch] = match (rules.last, rules.whitted) {
+        (true, _) => &[],
+        (_, true) => &[Branch::Reflected, Branch::Refracted],
+        (_, false) => &[Branch::Random],
+    };
+    for &branch in branches {
+        lanes::run_long(level, width, Onwards(&mut portion, branch, &mut shaded.paths));
+    }
+    shaded
 }
