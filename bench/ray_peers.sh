@@ -44,7 +44,7 @@ row() {
             set == theirs && $4 ~ /^embree/ && rate() > best { best = rate(); mode = $4; sub(/.*\//, "", mode) }
             set == mine && $4 !~ /^embree/ { our = rate() }
             END {
-                if (!best || !our) { print "ray_peers.sh: no figure for " name " in " scene > "/dev/stderr"; exit 1 }
+                if (!best || !our || counted == "") { print "ray_peers.sh: no figure for " name " in " scene > "/dev/stderr"; exit 1 }
                 printf "| %s | %s | %.2f (%s) | %.2f | %.2f | %s |\n", scene, name, best, mode, our, our / best, counted
             }'
 }

@@ -1,6 +1,6 @@
 //! Light sources: points and triangles that shine, one of them chosen for each point that is lit.
 
-use super::material::{luminance, negate};
+use super::material::{luminance, luminance_of, negate};
 use super::scenery::offset_of;
 use super::shade::{word, words3};
 use crate::geometry::Vec3;
@@ -37,7 +37,7 @@ impl Lights {
     /// Of these points and of the triangles of a valid model that shine, both sides of them. `radius` is the size of the scene.
     pub(crate) fn new(points: &[Light], model: &Model, radius: f64) -> Self {
         let (mut table, mut weights) = (Vec::new(), Vec::new());
-        let luminance = |c: [f32; 3]| f64::from(luminance::<f32>(Vec3 { x: c[0], y: c[1], z: c[2] }));
+        let luminance = |c: [f32; 3]| f64::from(luminance_of(c));
         for light in points.iter().filter(|light| luminance(light.intensity) > 0.0) {
             weights.push(f64::from(PI) * luminance(light.intensity));
             table.extend(

@@ -1,6 +1,7 @@
 //! From light to what a screen can show.
 
 use super::Image;
+use super::material::luminance_of;
 use std::str::FromStr;
 
 /// How bright light is brought into the range of a screen.
@@ -35,7 +36,7 @@ impl Tone {
         match self {
             Self::None => rgb,
             Self::Reinhard => {
-                let luminance = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+                let luminance = luminance_of(rgb);
                 rgb.map(|c| c / (1.0 + luminance))
             }
             Self::Aces => rgb.map(|c| (c * (2.51 * c + 0.03)) / (c * (2.43 * c + 0.59) + 0.14)),

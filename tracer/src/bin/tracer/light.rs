@@ -97,21 +97,12 @@ impl LightOptions {
     pub fn check(&self, args: &Args) -> Result<(), Error> {
         let Self { integrator, .. } = *self;
         let path_alone = "is for --integrator path";
+        let not_eye = "is for --integrator whitted, ao and path";
         for (given, name, of, purpose) in [
-            (
-                self.samples.is_some(),
-                "--samples",
-                integrator != Choice::Eye,
-                "is for --integrator whitted, ao and path",
-            ),
-            (
-                self.time_limit.is_some(),
-                "--time-limit",
-                integrator != Choice::Eye,
-                "is for --integrator whitted, ao and path",
-            ),
-            (self.crop.is_some(), "--crop", integrator != Choice::Eye, "is for --integrator whitted, ao and path"),
-            (self.layers, "--layers", integrator != Choice::Eye, "is for --integrator whitted, ao and path"),
+            (self.samples.is_some(), "--samples", integrator != Choice::Eye, not_eye),
+            (self.time_limit.is_some(), "--time-limit", integrator != Choice::Eye, not_eye),
+            (self.crop.is_some(), "--crop", integrator != Choice::Eye, not_eye),
+            (self.layers, "--layers", integrator != Choice::Eye, not_eye),
             (self.ungrouped, "--ungrouped", self.has_bounces(), "is for --integrator whitted and path"),
             (self.bounces.is_some(), "--bounces", self.has_bounces(), "is for --integrator whitted and path"),
             (self.roulette, "--roulette", integrator == Choice::Path, path_alone),

@@ -9,6 +9,7 @@ use crate::Error;
 use crate::geometry::{HitBatch, RayBatch};
 use crate::method::BitVec;
 use crate::model::Camera;
+use crate::render::material::luminance_of;
 use crate::render::{Image, Sampler, Scenery};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -62,7 +63,7 @@ impl Film {
             let at = y * self.crop.width + x;
             let sum = &mut self.sums[at];
             *sum = [sum[0] + rgb[0], sum[1] + rgb[1], sum[2] + rgb[2]];
-            let luminance = luminance(*rgb);
+            let luminance = luminance_of(*rgb);
             self.squares[at] += luminance * luminance;
         }
     }
@@ -71,17 +72,13 @@ impl Film {
         let n = samples as f32;
         let mean: Vec<[f32; 3]> = self.sums.iter().map(|sum| sum.map(|c| c / n)).collect();
         let spread = |(square, mean): (&f32, &[f32; 3])| {
-            let luminance = luminance(*mean);
+            let luminance = luminance_of(*mean);
             (square / n - luminance * luminance).max(0.0) / (n - 1.0).max(1.0)
         };
         let variance = self.squares.iter().zip(&mean).map(spread).collect();
         let image = Image { width: self.crop.width, height: self.crop.height, pixels: mean };
         Rendering { image, samples, variance, times }
     }
-}
-
-fn luminance([r, g, b]: [f32; 3]) -> f32 {
-    r * 0.2126 + g * 0.7152 + b * 0.0722
 }
 
 /// What is used again by each wave.

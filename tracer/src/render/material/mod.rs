@@ -103,6 +103,11 @@ pub(crate) fn luminance<F: Float>(c: Vec3<F>) -> F {
     c.x * F::splat(0.2126) + c.y * F::splat(0.7152) + c.z * F::splat(0.0722)
 }
 
+/// [`luminance`] of one colour.
+pub(crate) fn luminance_of([x, y, z]: [f32; 3]) -> f32 {
+    luminance::<f32>(Vec3 { x, y, z })
+}
+
 #[inline(always)]
 pub(crate) fn negate<F: Float>(v: Vec3<F>) -> Vec3<F> {
     Vec3 { x: -v.x, y: -v.y, z: -v.z }
