@@ -5,7 +5,10 @@ use simd::Level;
 use tracer::Scene;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
 use tracer::geometry::{Hit, HitBatch, RayBatch, Triangle};
-use tracer::method::{Auto, BitVec, Context, Limits, Method, Packet, SharedOrigin, Single, SlabForm, Width};
+use tracer::method::{
+    Auto, BitVec, Context, Intervals, Limits, Method, Packet, Partition, Reordering, SharedOrigin, Single, SlabForm,
+    Traversal, Width,
+};
 use tracer::model::Mesh;
 use tracer::progress::Silent;
 
@@ -75,8 +78,23 @@ pub fn check(what: &str, trees: &Trees, levels: &[Level], rays: &RayBatch, expec
             same(&packet.with_shared_origin(SharedOrigin::Always), &format!("{width}"));
             let loose = packet.with_form(SlabForm::Conservative).with_shared_origin(SharedOrigin::Never);
             same(&loose, &format!("{width} conservative"));
+            check_reordering(&trees.binary, level, width, &same);
         }
     }
+}
+
+fn check_reordering(bvh: &Bvh, level: Level, width: Width, same: &dyn Fn(&dyn Method, &str)) {
+    let method = |traversal| Reordering::new(bvh, level, width, traversal);
+    if width == Width::One {
+        same(&method(Traversal::Single), "");
+        return;
+    }
+    for traversal in [Traversal::Simd, Traversal::Packet, Traversal::Adaptive, Traversal::Exact] {
+        same(&method(traversal), &format!("{width}"));
+    }
+    let often = method(Traversal::Adaptive).with_packet(80).with_threshold(0.9).with_interval_tests_from(0);
+    same(&often.clone().with_intervals(Intervals::Loose), &format!("{width} loose"));
+    same(&often.with_partition(Partition::InPlace), &format!("{width} in place"));
 }
 
 /// Checks that watertight scenes over trees of two builders find the same, at all levels, in batches and ray by ray.

@@ -33,7 +33,7 @@ impl<F: Float> Boxes<F> for Packet<F> {
 /// What the cheap test needs of a ray.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cull<F: Float> {
-    inv_dir: Vec3<F>,
+    pub(crate) inv_dir: Vec3<F>,
     /// What is added for near and for far planes.
     near: Vec3<F>,
     far: Vec3<F>,
@@ -61,6 +61,20 @@ impl<F: Float> Cull<F> {
             Self { inv_dir, near: minus - growth, far: growth - origin },
             small.lt(scale) & small.lt(reach) & reach.lt(large),
         )
+    }
+
+    /// What boxes grow by for a ray: more will do as well.
+    #[inline(always)]
+    pub(crate) fn growth(ray: &Packet<F>, largest: f32) -> F {
+        let scale = F::splat(largest) + ray.org.x.abs().max(ray.org.y.abs()).max(ray.org.z.abs());
+        scale * F::splat(8.0 * f32::EPSILON)
+    }
+
+    /// What is added to `plane * inv_dir` for planes that were moved by [`Cull::growth`]: that takes one of the roundings that the growth has left.
+    #[inline(always)]
+    pub(crate) fn offset(&self, ray: &Packet<F>) -> Vec3<F> {
+        let origin = ray.org * self.inv_dir;
+        Vec3 { x: -origin.x, y: -origin.y, z: -origin.z }
     }
 
     #[inline(always)]

@@ -283,6 +283,14 @@ impl<F: Float> Packet<F> {
         }
     }
 
+    /// Of rays that were cleaned before, all of them valid.
+    #[inline(always)]
+    pub(crate) fn of_clean(org: Vec3<F>, dir: Vec3<F>, t_min: F, t_max: F) -> Self {
+        let inv_dir = Vec3 { x: reciprocal(dir.x), y: reciprocal(dir.y), z: reciprocal(dir.z) };
+        let inv_dir_far = inv_dir.scale(F::splat(Self::PAD));
+        Self { org, dir, inv_dir, inv_dir_far, t_min, t_max, valid: F::Mask::splat(true) }
+    }
+
     /// Signs of the directions: per axis, which lanes are negative.
     #[inline(always)]
     pub(crate) fn signs(&self) -> [F::Mask; 3] {

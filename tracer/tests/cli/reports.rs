@@ -44,7 +44,7 @@ fn every_method_finds_the_same() {
     let folder = Folder::new();
     let packet = folder.json("render balls:1 --size 64x48 --shadows --json");
     assert_eq!(packet["method"], "packet");
-    for method in ["ordered", "single4", "single8", "single16", "auto"] {
+    for method in ["ordered", "single4", "single8", "single16", "boulos-single", "boulos-adaptive", "auto"] {
         let other = folder.json(&format!("render balls:1 --size 64x48 --shadows --json --method {method}"));
         assert_eq!(other["method"], method);
         assert_eq!(
@@ -56,7 +56,11 @@ fn every_method_finds_the_same() {
         assert_eq!(report["all_identical"], true, "{method}");
         let rows = report["rows"].as_array().expect("rows");
         let named = rows.iter().filter(|row| row["name"].as_str().is_some_and(|name| name.contains(method))).count();
-        assert_eq!(named, levels().len() * if method == "ordered" { 3 } else { 1 }, "{method}");
+        assert_eq!(
+            named,
+            levels().len() * if ["ordered", "boulos-adaptive"].contains(&method) { 3 } else { 1 },
+            "{method}"
+        );
         assert_eq!(rows[0]["hits_hash"], packet["hits_hash"], "{method}");
     }
 }

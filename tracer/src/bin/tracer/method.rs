@@ -4,7 +4,7 @@ use clap::ValueEnum;
 use simd::Level;
 use tracer::Error;
 use tracer::bvh::{Bvh, CollapseConfig, WideBvh};
-use tracer::method::{Auto, Method, Order, Packet, Single, SlabForm, Width};
+use tracer::method::{Auto, Method, Order, Packet, Reordering, Single, SlabForm, Traversal, Width};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum MethodChoice {
@@ -18,6 +18,16 @@ pub enum MethodChoice {
     Single8,
     /// Of 16
     Single16,
+    /// Each ray alone through the skip-pointer tree, as the paper of 2008 compares with
+    BoulosSingle,
+    /// As many rays together as a vector has lanes
+    BoulosSimd,
+    /// Packets of 64 that go where their first ray goes
+    BoulosPacket,
+    /// Packets of 256 whose rays are put into new order where few of them are active: the paper's method
+    BoulosAdaptive,
+    /// The same wherever one is not
+    BoulosExact,
     /// As many rays together as agree: the fastest for any rays, but its tree takes a quarter longer to build
     Auto,
 }
@@ -33,14 +43,29 @@ pub enum Tree {
 impl MethodChoice {
     /// Whether the number of rays in a packet can be chosen.
     pub fn has_packets(self) -> bool {
-        matches!(self, Self::Packet | Self::Ordered)
+        matches!(self, Self::Packet | Self::Ordered) || (self.traversal().is_some() && self != Self::BoulosSingle)
+    }
+
+    fn traversal(self) -> Option<Traversal> {
+        match self {
+            Self::BoulosSingle => Some(Traversal::Single),
+            Self::BoulosSimd => Some(Traversal::Simd),
+            Self::BoulosPacket => Some(Traversal::Packet),
+            Self::BoulosAdaptive => Some(Traversal::Adaptive),
+            Self::BoulosExact => Some(Traversal::Exact),
+            _ => None,
+        }
     }
 
     /// # Errors
     /// If options that are for packets alone were given for another method.
     pub fn check(self, width: Width, form: SlabForm) -> Result<(), Error> {
-        if !self.has_packets() && (width != Width::Auto || form != SlabForm::Exact) {
-            return Err(Error::Usage("--width and --slab are for --method packet and ordered: leave them out".into()));
+        if !self.has_packets() && width != Width::Auto {
+            let message = "--width is for --method packet, ordered and boulos-simd to boulos-exact: leave it out";
+            return Err(Error::Usage(message.into()));
+        }
+        if !matches!(self, Self::Packet | Self::Ordered) && form != SlabForm::Exact {
+            return Err(Error::Usage("--slab is for --method packet and ordered: leave it out".into()));
         }
         Ok(())
     }
@@ -53,10 +78,10 @@ impl MethodChoice {
     pub fn tree(self, bvh: &Bvh) -> Tree {
         let config = CollapseConfig::default();
         match self {
-            Self::Packet | Self::Ordered => Tree::Binary,
             Self::Single4 => Tree::Four(bvh.collapse(&config)),
             Self::Single8 | Self::Auto => Tree::Eight(bvh.collapse(&config)),
             Self::Single16 => Tree::Sixteen(bvh.collapse(&config)),
+            _ => Tree::Binary,
         }
     }
 
@@ -69,6 +94,9 @@ impl MethodChoice {
         width: Width,
         form: SlabForm,
     ) -> Box<dyn Method + 'a> {
+        if let Some(traversal) = self.traversal() {
+            return Box::new(Reordering::new(bvh, level, width, traversal));
+        }
         let packet = Packet::new(bvh, level, width).with_form(form);
         match tree {
             Tree::Binary if self == Self::Ordered => Box::new(packet.with_order(Order::NearFirst)),

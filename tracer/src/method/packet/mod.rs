@@ -8,7 +8,7 @@ use crate::Error;
 use crate::bvh::Bvh;
 use crate::geometry::moller_trumbore;
 use crate::geometry::slab::{self, Near, Origin, PerRay, Shared};
-use crate::geometry::{HitBatch, Packet as Rays, RayBatch, RayBlock};
+use crate::geometry::{Hit, HitBatch, HitBlock, Packet as Rays, Ray, RayBatch, RayBlock};
 use crate::lanes::{self, Lanes, Width};
 use crate::stats::{Count, Counters, NoCount};
 use found::{Any, Closest, Found, Query};
@@ -231,6 +231,20 @@ fn traverse<F: Float, O: Origin<F>, T: Found<F>, C: Count>(
             break;
         }
     }
+}
+
+/// The first hit of one ray, in plain `f32`.
+pub(super) fn closest(bvh: &Bvh, ray: &Ray) -> Hit {
+    let ray = Rays::<f32>::of(ray);
+    let [x, y, z] = ray.signs();
+    let near = Near::of_octant(usize::from(x) | usize::from(y) << 1 | usize::from(z) << 2);
+    let mut found = <Closest as Query>::Found::new(&ray);
+    if ray.valid {
+        traverse(bvh, SlabForm::Exact, &ray, PerRay, near, &mut found, &mut NoCount);
+    }
+    let mut block = HitBlock::MISS;
+    found.store(&mut block, 0);
+    block.get(0)
 }
 
 /// The triangles of a leaf: the first, and how many.

@@ -115,7 +115,7 @@ impl Case {
             (MethodChoice::Packet, Isa::Serial) => format!("emulated float{n}"),
             (MethodChoice::Packet, Isa::Scalar) => format!("float{n} as LLVM likes"),
             (MethodChoice::Packet, _) => format!("{upper} float{n}"),
-            (MethodChoice::Ordered, _) => format!("{upper} ordered, float{n}"),
+            _ if method.has_packets() => format!("{upper} {}, float{n}", method.name()),
             _ => format!("{upper} {}", method.name()),
         };
         Self { name, method, level, width, one_thread: Vec::new(), all_threads: Vec::new() }
