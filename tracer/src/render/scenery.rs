@@ -66,6 +66,12 @@ impl Scenery {
         [0, 1, 2].map(|k| (words[k] + words[3 + k]).min(1.0))
     }
 
+    /// What rays see that hit nothing, in words that tell one environment from another.
+    pub(super) fn environment_text(&self) -> String {
+        let [r, g, b] = self.environment;
+        format!("{r},{g},{b}")
+    }
+
     /// With light of one colour from all directions in place of the model's background.
     #[must_use]
     pub fn with_environment(self, environment: [f32; 3]) -> Self {

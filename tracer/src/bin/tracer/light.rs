@@ -5,9 +5,10 @@ use crate::console::Console;
 use crate::method::MethodChoice;
 use crate::picture::{self, Kind};
 use crate::render::Args;
+use crate::report::{Subject, Written};
 use crate::workload::{Workload, mrays_per_s, ms};
 use clap::ValueEnum;
-use indicatif::{HumanBytes, HumanCount};
+use indicatif::HumanCount;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -102,6 +103,7 @@ impl LightOptions {
             (self.samples.is_some(), "--samples", integrator != Choice::Eye, not_eye),
             (self.time_limit.is_some(), "--time-limit", integrator != Choice::Eye, not_eye),
             (self.crop.is_some(), "--crop", integrator != Choice::Eye, not_eye),
+            (args.checkpoint.checkpoint.is_some(), "--checkpoint", integrator != Choice::Eye, not_eye),
             (self.layers, "--layers", integrator != Choice::Eye, not_eye),
             (self.ungrouped, "--ungrouped", self.has_bounces(), "is for --integrator whitted and path"),
             (self.bounces.is_some(), "--bounces", self.has_bounces(), "is for --integrator whitted and path"),
@@ -120,6 +122,7 @@ impl LightOptions {
                 return Err(Error::Usage(format!("{name} {purpose}: leave it out")));
             }
         }
+        args.checkpoint.check()?;
         let exr = args.output.as_deref().map(Kind::of).transpose()? == Some(Kind::Exr);
         if exr && (self.tone.is_some() || self.exposure.is_some()) {
             return Err(Error::Usage("--tone and --exposure are for .png: an .exr holds the light itself".into()));
@@ -189,17 +192,12 @@ impl LightOptions {
 
 #[derive(Serialize)]
 struct Report {
-    scene: String,
-    triangles: usize,
-    nodes: usize,
-    build: &'static str,
-    load_ms: f64,
-    build_ms: f64,
-    width: usize,
-    height: usize,
-    camera: String,
+    #[serde(flatten)]
+    subject: Subject,
     integrator: String,
     samples: u32,
+    /// Of them, those of the checkpoint; what comes below is of the others.
+    samples_before: u32,
     seed: u64,
     level: String,
     method: String,
@@ -213,8 +211,8 @@ struct Report {
     /// Rays whose first hit was asked for and rays to lights, after each number of reflections.
     bounces: Vec<[u64; 2]>,
     image_hash: String,
-    output: PathBuf,
-    output_bytes: usize,
+    #[serde(flatten)]
+    written: Written,
 }
 
 /// Renders, writes and reports, on the current rayon pool.
@@ -228,7 +226,8 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let method = choice.over(&work.bvh, &tree, config.level, config.lanes, args.trace.form());
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     let means = Means { method: &*method, cx: &mut cx, observer: None, progress: console };
-    let Rendering { image, samples, times, variance } = integrator::render(scene, &scenery, camera, &config, means)?;
+    let (rendering, samples_before) = args.checkpoint.render(scene, &scenery, camera, &config, means, console)?;
+    let Rendering { image, samples, times, variance, rays: _ } = rendering;
     console.clear();
 
     let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
@@ -240,17 +239,10 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     };
     let total_ms = ms(times.total());
     let report = Report {
-        scene: scene.name.clone(),
-        triangles: scene.mesh.triangles.len(),
-        nodes: work.bvh.nodes.len(),
-        build: work.build,
-        load_ms: work.load_ms,
-        build_ms: work.build_ms,
-        width: image.width,
-        height: image.height,
-        camera: camera.to_string(),
+        subject: Subject::new(work, &camera, [image.width, image.height]),
         integrator: args.light.integrator.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default(),
         samples,
+        samples_before,
         seed: config.seed,
         level: config.level.to_string(),
         method: choice.name(),
@@ -263,17 +255,17 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         mrays_per_s: mrays_per_s(times.rays() as usize, total_ms),
         bounces: times.bounces.iter().map(|b| [b.closest, b.any]).collect(),
         image_hash: format!("{:016x}", image.hash()),
-        output,
-        output_bytes,
+        written: Written { output, output_bytes },
     };
     if args.json { console.print_json(&report) } else { console.print(&text(&report)) }
 }
 
 fn text(r: &Report) -> String {
-    let [triangles, nodes, rays] = [r.triangles as u64, r.nodes as u64, r.rays].map(|n| HumanCount(n).to_string());
-    let (output, bytes) = (r.output.display(), HumanBytes(r.output_bytes as u64));
-    let Report { scene, load_ms, build, build_ms, camera, width, height, level, method, threads, .. } = r;
-    let Report { generation_ms, traversal_ms, shading_ms, total_ms, mrays_per_s, integrator, samples, .. } = r;
+    let (subject, written, rays) = (r.subject.text(), r.written.text(), HumanCount(r.rays));
+    let Subject { width, height, .. } = r.subject;
+    let Report { integrator, samples, level, method, threads, .. } = r;
+    let Report { generation_ms, traversal_ms, shading_ms, total_ms, mrays_per_s, .. } = r;
+    let before = if r.samples_before > 0 { format!(" ({} before)", r.samples_before) } else { String::new() };
     let share = |part: f64| 100.0 * part / total_ms.max(1e-9);
     let [g, t, s] = [*generation_ms, *traversal_ms, *shading_ms].map(share);
     let mut bounces = String::new();
@@ -282,16 +274,12 @@ fn text(r: &Report) -> String {
     }
     format!(
         "\
-scene     {scene}, {triangles} triangles, read in {load_ms:.0} ms
-tree      {build}, {nodes} nodes, built in {build_ms:.0} ms
-camera    {camera}
-rendered  {width}x{height} by {integrator}, samples: {samples}; level {level}, method {method}, threads: {threads}
+{subject}rendered  {width}x{height} by {integrator}, samples: {samples}{before}; level {level}, method {method}, threads: {threads}
   generation {generation_ms:>10.2} ms {g:>5.1} %
   traversal  {traversal_ms:>10.2} ms {t:>5.1} %
   shading    {shading_ms:>10.2} ms {s:>5.1} %
   total      {total_ms:>10.2} ms, {mrays_per_s:.2} Mrays/s ({rays} rays)
   bounce             rays  rays to lights
-{bounces}wrote     {output}, {bytes}
-"
+{bounces}{written}"
     )
 }

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod checkpoint;
 mod compare;
 mod console;
 mod generate;
@@ -12,6 +13,7 @@ mod method;
 mod npy;
 mod picture;
 mod render;
+mod report;
 mod trace;
 mod workload;
 
