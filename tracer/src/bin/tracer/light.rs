@@ -2,6 +2,7 @@
 
 use crate::args::BuildOptions;
 use crate::console::Console;
+use crate::cost::Cost;
 use crate::method::MethodChoice;
 use crate::picture::{self, Kind};
 use crate::render::Args;
@@ -54,9 +55,12 @@ pub struct LightOptions {
     #[arg(long, value_name = "X,Y,W,H")]
     crop: Option<Part>,
     /// Put more than light into an .exr, for whitted, ao and path: distance, normal, albedo, triangle and material of what is seen through the
-    /// middle of each pixel, and the variance of the light
+    /// middle of each pixel, the variance of the light, and the number of rays
     #[arg(long)]
     layers: bool,
+    /// Show the number of rays of each pixel in false colours, in a .png, for whitted, ao and path
+    #[arg(long, value_name = "FILE")]
+    cost: Option<PathBuf>,
     /// Brighten a .png by so many stops
     #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
     exposure: Option<f32>,
@@ -104,6 +108,13 @@ impl LightOptions {
             (self.time_limit.is_some(), "--time-limit", integrator != Choice::Eye, not_eye),
             (self.crop.is_some(), "--crop", integrator != Choice::Eye, not_eye),
             (args.checkpoint.checkpoint.is_some(), "--checkpoint", integrator != Choice::Eye, not_eye),
+            (
+                args.environment.environment.is_some(),
+                "--environment",
+                self.has_bounces(),
+                "is for --integrator whitted and path",
+            ),
+            (self.cost.is_some(), "--cost", integrator != Choice::Eye, not_eye),
             (self.layers, "--layers", integrator != Choice::Eye, not_eye),
             (self.ungrouped, "--ungrouped", self.has_bounces(), "is for --integrator whitted and path"),
             (self.bounces.is_some(), "--bounces", self.has_bounces(), "is for --integrator whitted and path"),
@@ -123,6 +134,12 @@ impl LightOptions {
             }
         }
         args.checkpoint.check()?;
+        args.environment.check()?;
+        if let Some(cost) = &self.cost
+            && Kind::of(cost)? != Kind::Png
+        {
+            return Err(Error::Usage(format!("--cost {}: give a picture that ends in .png", cost.display())));
+        }
         let exr = args.output.as_deref().map(Kind::of).transpose()? == Some(Kind::Exr);
         if exr && (self.tone.is_some() || self.exposure.is_some()) {
             return Err(Error::Usage("--tone and --exposure are for .png: an .exr holds the light itself".into()));
@@ -185,6 +202,7 @@ impl LightOptions {
             level,
             lanes: args.trace.width,
             group_shading: !self.ungrouped,
+            count_rays: self.layers || self.cost.is_some(),
             ..Config::new(size.width, size.height)
         })
     }
@@ -211,6 +229,8 @@ struct Report {
     /// Rays whose first hit was asked for and rays to lights, after each number of reflections.
     bounces: Vec<[u64; 2]>,
     image_hash: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cost: Option<Cost>,
     #[serde(flatten)]
     written: Written,
 }
@@ -220,26 +240,31 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let config = args.light.config(args)?;
     let scene = &work.scene;
     let camera = args.picture.camera.unwrap_or_else(|| scene.camera_or_default());
-    let scenery = Scenery::new(scene, &camera);
+    let scenery = match args.environment.open(scene)? {
+        Some(map) => Scenery::in_environment(scene, map),
+        None => Scenery::new(scene, &camera),
+    };
     let choice = args.trace.method(MethodChoice::Auto)?;
     let tree = choice.tree(&work.bvh);
     let method = choice.over(&work.bvh, &tree, config.level, config.lanes, args.trace.form());
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     let means = Means { method: &*method, cx: &mut cx, observer: None, progress: console };
     let (rendering, samples_before) = args.checkpoint.render(scene, &scenery, camera, &config, means, console)?;
-    let Rendering { image, samples, times, variance, rays: _ } = rendering;
     console.clear();
 
+    let cost = args.light.cost.as_ref().map(|path| Cost::write(&rendering, path)).transpose()?;
     let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
+    let Rendering { ref image, samples, ref times, .. } = rendering;
+    let (size, image_hash, times) = ([image.width, image.height], format!("{:016x}", image.hash()), times.clone());
     let output_bytes = if args.light.layers {
         let layers = Layers::new(&scenery, &camera, &config, &*method, &mut cx)?;
-        picture::write_layers(&image, variance, layers, &output)?
+        picture::write_layers(rendering, layers, &output)?
     } else {
-        picture::write(&args.light.developed(&image, &output), &output)?
+        picture::write(&args.light.developed(image, &output), &output)?
     };
     let total_ms = ms(times.total());
     let report = Report {
-        subject: Subject::new(work, &camera, [image.width, image.height]),
+        subject: Subject::new(work, &camera, size),
         integrator: args.light.integrator.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default(),
         samples,
         samples_before,
@@ -254,7 +279,8 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         rays: times.rays(),
         mrays_per_s: mrays_per_s(times.rays() as usize, total_ms),
         bounces: times.bounces.iter().map(|b| [b.closest, b.any]).collect(),
-        image_hash: format!("{:016x}", image.hash()),
+        image_hash,
+        cost,
         written: Written { output, output_bytes },
     };
     if args.json { console.print_json(&report) } else { console.print(&text(&report)) }
@@ -262,6 +288,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
 
 fn text(r: &Report) -> String {
     let (subject, written, rays) = (r.subject.text(), r.written.text(), HumanCount(r.rays));
+    let cost = r.cost.as_ref().map(Cost::text).unwrap_or_default();
     let Subject { width, height, .. } = r.subject;
     let Report { integrator, samples, level, method, threads, .. } = r;
     let Report { generation_ms, traversal_ms, shading_ms, total_ms, mrays_per_s, .. } = r;
@@ -280,6 +307,6 @@ fn text(r: &Report) -> String {
   shading    {shading_ms:>10.2} ms {s:>5.1} %
   total      {total_ms:>10.2} ms, {mrays_per_s:.2} Mrays/s ({rays} rays)
   bounce             rays  rays to lights
-{bounces}{written}"
+{bounces}{cost}{written}"
     )
 }

@@ -5,6 +5,8 @@ mod args;
 mod checkpoint;
 mod compare;
 mod console;
+mod cost;
+mod environment;
 mod generate;
 mod info;
 mod light;

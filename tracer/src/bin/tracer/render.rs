@@ -3,6 +3,7 @@
 use crate::args::{self, BuildOptions, PictureOptions, TraceOptions};
 use crate::checkpoint::CheckpointOptions;
 use crate::console::Console;
+use crate::environment::EnvironmentOptions;
 use crate::light::{self, LightOptions};
 use crate::method::MethodChoice;
 use crate::picture;
@@ -26,6 +27,7 @@ Examples:
   tracer render atrium.obj.zst --size 1920x1080 --camera -60,86,10/0,40,0 --shadows
   tracer render rings --method auto                 as many rays together as agree
   tracer render tree:8 -o tree.exr --level sse2 --width 4 --threads 1 --json
+  tracer render garden.obj --integrator path --samples 256 --mis --environment noon.hdr --environment-rotation 90
   tracer render room.obj --integrator path --samples 4096 --checkpoint room.film
   tracer render room.obj --integrator path --samples 64 --bounces 4 --mis --method auto --tone aces
   tracer render balls --integrator whitted --samples 4 --method auto
@@ -43,6 +45,8 @@ pub struct Args {
     pub picture: PictureOptions,
     #[command(flatten)]
     pub light: LightOptions,
+    #[command(flatten)]
+    pub environment: EnvironmentOptions,
     #[command(flatten)]
     pub checkpoint: CheckpointOptions,
     #[command(flatten)]

@@ -11,6 +11,7 @@ mod layers;
 mod lists;
 mod place;
 mod shade;
+mod sky;
 mod times;
 mod wave;
 
