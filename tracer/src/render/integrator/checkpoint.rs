@@ -83,7 +83,7 @@ fn hash(model: &Model) -> u64 {
     let floats = |list: &[[f32; 3]]| fnv1a(list.as_flattened().iter().map(|c| c.to_bits()));
     let words = |list: &[[u32; 3]]| fnv1a(list.as_flattened().iter().copied());
     let mut parts =
-        vec![floats(positions), words(triangles), floats(normals), words(normal_indices), fnv1a(of_triangles.clone())];
+        vec![floats(positions), words(triangles), floats(normals), words(normal_indices), fnv1a(of_triangles.iter().copied())];
     for material in materials {
         let Material { name: _, ambient, diffuse, specular, shininess, emission, ior, transmission, reflection } =
             material;
