@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use crate::{Folder, parts};
+use std::cell::Cell;
 use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -51,7 +52,13 @@ fn while_it_traces() {
 fn while_it_renders_with_a_checkpoint() {
     let folder = Folder::new();
     let command = "render balls:2 --integrator path --size 40x30 --threads 1 -o out.png --checkpoint film";
-    let soon = |time| time > Duration::from_millis(1500);
+    let begun = Cell::new(None);
+    let soon = |time| {
+        if begun.get().is_none() && !folder.files().is_empty() {
+            begun.set(Some(time));
+        }
+        begun.get().is_some_and(|begun| time > begun + Duration::from_millis(1000))
+    };
     let said = interrupt(&folder, &format!("{command} --samples 1000000"), soon);
     assert_eq!(folder.files(), ["film"]);
     assert!(said.starts_with("note: ") && said.contains("of 1000000 samples are in film"), "{said}");

@@ -82,8 +82,13 @@ fn hash(model: &Model) -> u64 {
     let Mesh { positions, triangles, normals, normal_indices, materials: of_triangles } = mesh;
     let floats = |list: &[[f32; 3]]| fnv1a(list.as_flattened().iter().map(|c| c.to_bits()));
     let words = |list: &[[u32; 3]]| fnv1a(list.as_flattened().iter().copied());
-    let mut parts =
-        vec![floats(positions), words(triangles), floats(normals), words(normal_indices), fnv1a(of_triangles.iter().copied())];
+    let mut parts = vec![
+        floats(positions),
+        words(triangles),
+        floats(normals),
+        words(normal_indices),
+        fnv1a(of_triangles.iter().copied()),
+    ];
     for material in materials {
         let Material { name: _, ambient, diffuse, specular, shininess, emission, ior, transmission, reflection } =
             material;
