@@ -7,7 +7,7 @@ use tracer::bvh::{BuildConfig, Bvh, CollapseConfig};
 use tracer::method::{Auto, Context, Method, Order, Packet, Single, Width};
 use tracer::model::{Camera, Light, Material, Mesh, Model, Reflection, builtin};
 use tracer::progress::Silent;
-use tracer::render::integrator::{self, Config, Crop, Integrator, Means, Path, Query, Rendering};
+use tracer::render::integrator::{self, Config, Crop, Film, Identity, Integrator, Means, Path, Query, Rendering};
 use tracer::render::{Frame, Scenery, Settings, Surfaces};
 
 /// A scene of quadrilaterals.
@@ -95,10 +95,13 @@ fn path(path: Path) -> Integrator {
 }
 
 fn render_by(model: &Model, config: &Config, method: &dyn Method) -> Rendering {
+    render_in(model, &Scenery::new(model, &model.camera_or_default()), config, method)
+}
+
+fn render_in(model: &Model, scenery: &Scenery, config: &Config, method: &dyn Method) -> Rendering {
     let camera = model.camera_or_default();
-    let scenery = Scenery::new(model, &camera);
     let means = Means { method, cx: &mut Context::default(), observer: None, progress: &Silent };
-    integrator::render(model, &scenery, camera, config, means).expect("not cancelled")
+    integrator::render(model, scenery, camera, config, means).expect("not cancelled")
 }
 
 fn render(model: &Model, config: &Config) -> Rendering {
@@ -168,6 +171,65 @@ fn same_bits_by_every_means() {
         expected
     });
     assert_eq!(found, HASHES, "other pictures than before: {found:#018x?}");
+}
+
+/// Interrupted again and again, kept in a file each time, with other batches: the bits of a picture made at once.
+#[test]
+fn resumed_pictures_are_the_same() {
+    let model = mixed();
+    let bvh = Bvh::build(&model.mesh, &BuildConfig::default(), &Silent).expect("a tree");
+    let method = Packet::new(&bvh, Level::best(), Width::Auto);
+    let camera = model.camera_or_default();
+    let scenery = Scenery::new(&model, &camera);
+    let folder = std::env::temp_dir().join(format!("tracer-checkpoint-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join("film");
+    let crop = Some(Crop { x: 3, y: 2, width: 30, height: 19 });
+    for integrator in ALL {
+        let config = Config { integrator, samples: 5, seed: 9, crop, count_rays: true, ..Config::new(37, 22) };
+        let whole = render_in(&model, &scenery, &config, &method);
+        let identity = Identity::new(&model, &scenery, &camera, &config);
+        Film::new(&config).save(&path, &identity).expect("written");
+        let mut interruptions = 0;
+        let again = loop {
+            let mut film = Film::load(&path, &identity, &config).expect("its own");
+            let before = film.done();
+            let config = Config { batch: [100, 1000, 37][interruptions % 3], ..config };
+            let means = Means { method: &method, cx: &mut Context::default(), observer: None, progress: &Silent };
+            let mut after = |film: &Film| match film.done() < before + 700 {
+                true => Ok(()),
+                false => Err(tracer::Error::Cancelled),
+            };
+            match integrator::resume(&scenery, camera, &config, means, &mut film, &mut after) {
+                Ok(rendering) => break rendering,
+                Err(e) => assert!(matches!(e, tracer::Error::Cancelled), "{e}"),
+            }
+            film.save(&path, &identity).expect("written");
+            interruptions += 1;
+        };
+        assert!(interruptions >= 3, "{interruptions}");
+        assert_eq!(again.image.hash(), whole.image.hash(), "{integrator:?}");
+        assert_eq!((again.samples, again.variance, again.rays), (5, whole.variance, whole.rays), "{integrator:?}");
+    }
+    std::fs::remove_dir_all(&folder).expect("removed");
+}
+
+/// Rays of each pixel: all that were traced, and those of a part are those of the whole.
+#[test]
+fn rays_of_each_pixel() {
+    let model = mixed();
+    for integrator in ALL {
+        let config = Config { integrator, samples: 3, count_rays: true, ..Config::new(37, 22) };
+        let whole = render(&model, &config);
+        assert_eq!(whole.rays.iter().map(|&n| u64::from(n)).sum::<u64>(), whole.times.rays());
+        assert!(whole.rays.iter().all(|&n| n >= 3));
+        let crop = Some(Crop { x: 5, y: 6, width: 7, height: 8 });
+        let part = render(&model, &Config { crop, batch: 13, ..config });
+        for (i, &rays) in part.rays.iter().enumerate() {
+            assert_eq!(rays, whole.rays[(6 + i / 7) * 37 + 5 + i % 7], "{integrator:?}");
+        }
+        assert!(render(&model, &Config { count_rays: false, ..config }).rays.is_empty());
+    }
 }
 
 /// A part of a picture is just that, and another seed another picture.
@@ -373,6 +435,18 @@ fn what_makes_no_sense_is_refused() {
     let camera = model.camera_or_default();
     let scenery = Scenery::new(&model, &camera);
     let usual = Config::new(10, 10);
+    let eye = Config { integrator: Integrator::Eye { shadows: true }, ..usual };
+    let counted = Config { count_rays: true, ..usual };
+    for (config, film, reason) in [
+        (eye, usual, "made at once"),
+        (usual, Config::new(11, 10), "another picture"),
+        (counted, usual, "does not count rays"),
+    ] {
+        let means = Means { method: &method, cx: &mut Context::default(), observer: None, progress: &Silent };
+        let mut film = Film::new(&film);
+        let error = integrator::resume(&scenery, camera, &config, means, &mut film, &mut |_| Ok(())).expect_err(reason);
+        assert!(error.to_string().contains(reason), "{error}");
+    }
     let crop = |x, y, width, height| Some(Crop { x, y, width, height });
     for (config, reason) in [
         (Config { samples: 0, ..usual }, "at least one sample"),

@@ -69,6 +69,7 @@ mod parallel;
 pub mod progress;
 pub mod render;
 mod scene;
+mod sealed;
 pub mod stats;
 mod world;
 

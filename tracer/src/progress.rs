@@ -7,6 +7,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub trait Progress: Sync {
     /// A new stage begins: its name and its number of units (0: unknown).
     fn stage(&self, _name: &str, _total: u64) {}
+    /// `n` units of the stage were done before, by earlier work: they count, but say nothing about the speed.
+    fn resume(&self, _n: u64) {}
     /// `n` more units of the stage are done.
     fn advance(&self, _n: u64) {}
     /// How it goes, in a few words to be shown beside: a rate, say.

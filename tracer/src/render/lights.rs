@@ -18,6 +18,8 @@ pub(crate) struct Lights {
     alias: Vec<u32>,
     /// Density per area at which points of triangles are chosen, over the luminance of their radiance.
     density: f32,
+    /// The chance that none of them is chosen, but the environment.
+    environment: f32,
 }
 
 /// A place on a light source.
@@ -34,8 +36,9 @@ pub(crate) struct LightSample<F: Float> {
 impl Lights {
     const WORDS: u32 = 15;
 
-    /// Of these points and of the triangles of a valid model that shine, both sides of them. `radius` is the size of the scene.
-    pub(crate) fn new(points: &[Light], model: &Model, radius: f64) -> Self {
+    /// Of these points and of the triangles of a valid model that shine, both sides of them. `radius` is the size of the scene. `environment` is
+    /// the weight of what they share the choice with.
+    pub(crate) fn new(points: &[Light], model: &Model, radius: f64, environment: f64) -> Self {
         let (mut table, mut weights) = (Vec::new(), Vec::new());
         let luminance = |c: [f32; 3]| f64::from(luminance_of(c));
         for light in points.iter().filter(|light| luminance(light.intensity) > 0.0) {
@@ -62,15 +65,22 @@ impl Lights {
         }
         let total: f64 = weights.iter().sum();
         let (thresholds, alias) = alias_table(&weights, total);
+        let total = total + environment;
         for (i, record) in table.chunks_exact_mut(Self::WORDS as usize).enumerate() {
             record[12] = (weights[i] / total) as f32;
             record[13] = thresholds[i];
         }
-        Self { table, alias, density: if total > 0.0 { (per_power / total) as f32 } else { 0.0 } }
+        let share = |weight: f64| if total > 0.0 { (weight / total) as f32 } else { 0.0 };
+        Self { table, alias, density: share(per_power), environment: share(environment) }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
         self.alias.is_empty()
+    }
+
+    /// The chance that the environment is chosen: where the first number is below it.
+    pub(crate) fn environment(&self) -> f32 {
+        self.environment
     }
 
     /// The density per area, of a place on a triangle of this radiance.
@@ -80,6 +90,7 @@ impl Lights {
     }
 
     /// A place on a light source, as seen from a point: by two numbers that choose the source and two that choose the place. There must be sources.
+    /// Where the environment is chosen the result has no meaning.
     #[inline(always)]
     pub(crate) fn sample<F: Float>(
         &self,
@@ -90,7 +101,12 @@ impl Lights {
     ) -> LightSample<F> {
         let table = &self.table[..];
         let last = F::Index::splat((self.alias.len() - 1) as u32);
-        let index = (choice[0] * F::splat(self.alias.len() as f32)).to_uint().min(last);
+        let mut first = choice[0];
+        if self.environment > 0.0 {
+            let chance = F::splat(self.environment);
+            first = ((first - chance) / (F::splat(1.0) - chance)).max(F::splat(0.0));
+        }
+        let index = (first * F::splat(self.alias.len() as f32)).to_uint().min(last);
         let threshold: F = word(table, index, Self::WORDS, 13, mask);
         let alias = F::Index::gather_masked(&self.alias, index, mask, index);
         let index = F::Index::select(choice[1].lt(threshold), index, alias);

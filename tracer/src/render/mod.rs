@@ -1,6 +1,7 @@
 //! Pictures, in three passes over the whole image (Geimer & Müller 2003, section 3.1): eye rays, closest hits, shading.
 //! With secondary rays: [`integrator`].
 
+mod environment;
 mod eye;
 mod image;
 pub mod integrator;
@@ -11,6 +12,7 @@ mod scenery;
 mod shade;
 mod tone;
 
+pub use environment::{Environment, Up};
 pub use eye::EyeRays;
 pub use image::Image;
 pub use sampler::Sampler;

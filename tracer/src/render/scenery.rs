@@ -1,7 +1,7 @@
 //! What rays are shaded with.
 
-use super::Surfaces;
 use super::lights::{Lights, corner_and_edges};
+use super::{Environment, Surfaces};
 use crate::model::{Camera, Light, Material, Model, Reflection};
 
 /// A scene laid out for shading secondary rays: corners, normals and materials of its triangles to gather from, and its light sources.
@@ -25,6 +25,10 @@ pub struct Scenery {
     pub(super) lamps: Lights,
     pub(super) ambient: f32,
     pub(super) environment: [f32; 3],
+    /// In place of the environment's one colour.
+    pub(super) map: Option<Environment>,
+    /// Farther than the scene is wide.
+    pub(super) reach: f32,
 }
 
 impl Scenery {
@@ -34,26 +38,39 @@ impl Scenery {
     /// Of a valid model ([`Model::validate`]). Where there are no lights and nothing shines, a light stands at the eye.
     #[must_use]
     pub fn new(model: &Model, camera: &Camera) -> Self {
+        Self::with(model, Some(camera), None)
+    }
+
+    /// Of a valid model ([`Model::validate`]), with a map around it: a light source like others, in place of the model's background. Mirrors show it,
+    /// but it does not light what is matt of them.
+    #[must_use]
+    pub fn in_environment(model: &Model, map: Environment) -> Self {
+        Self::with(model, None, Some(map))
+    }
+
+    fn with(model: &Model, headlight: Option<&Camera>, map: Option<Environment>) -> Self {
         let mesh = &model.mesh;
         let corners = (0..mesh.triangles.len()).flat_map(|i| corner_and_edges(mesh.triangle(i)).into_iter().flatten());
         let bounds = mesh.bounds();
         let square = |axis: usize| f64::from(bounds.max[axis] - bounds.min[axis]).powi(2);
         let radius = 0.5 * (square(0) + square(1) + square(2)).sqrt();
-        let lamps = Lights::new(&[], model, radius);
-        let points = match lamps.is_empty() {
-            true => model.lights_or_headlight(camera),
-            false => model.lights.clone(),
+        let lamps = Lights::new(&[], model, radius, 0.0);
+        let points = match headlight {
+            Some(camera) if lamps.is_empty() => model.lights_or_headlight(camera),
+            _ => model.lights.clone(),
         };
         Self {
             surfaces: Surfaces::new(model),
             corners: corners.collect(),
             materials: model.materials.iter().flat_map(words).collect(),
             models: model.materials.iter().map(|m| number(m.reflection)).collect(),
-            lights: Lights::new(&points, model, radius),
+            lights: Lights::new(&points, model, radius, map.as_ref().map_or(0.0, Environment::weight)),
             lamps,
             points,
             ambient: model.ambient,
             environment: model.background,
+            map,
+            reach: (4.0 * radius).clamp(1e-15, 1e15) as f32,
         }
     }
 
@@ -66,7 +83,13 @@ impl Scenery {
         [0, 1, 2].map(|k| (words[k] + words[3 + k]).min(1.0))
     }
 
-    /// With light of one colour from all directions in place of the model's background.
+    /// What rays see that hit nothing, in words that tell one environment from another.
+    pub(super) fn environment_text(&self) -> String {
+        let [r, g, b] = self.environment;
+        self.map.as_ref().map_or_else(|| format!("{r},{g},{b}"), |map| map.text().to_owned())
+    }
+
+    /// With light of one colour from all directions in place of the model's background. Without effect where there is a map.
     #[must_use]
     pub fn with_environment(self, environment: [f32; 3]) -> Self {
         Self { environment, ..self }

@@ -1,21 +1,22 @@
 //! Built scenes as files.
 //!
-//! Everything is little-endian, in words of four bytes unless said otherwise: eight bytes [`MAGIC`], the version, the number of
-//! bytes behind this header (eight bytes), a checksum of them (FNV-1a, eight bytes); then the numbers of meshes, nodes and groups, the
-//! first triangle of each mesh, the mask of each mesh, the box around all, the nodes (48 planes, 8 children) and the groups (36 coordinates, 4 ids).
+//! Behind the header of [`crate::sealed`], in words of four bytes: the numbers of meshes, nodes and groups, the first triangle of each
+//! mesh, the mask of each mesh, the box around all, the nodes (48 planes, 8 children) and the groups (36 coordinates, 4 ids).
 
 use super::Scene;
 use crate::Error;
 use crate::bvh::{WideBvh, WideNode};
 use crate::geometry::{Aabb, TriangleGroup};
-use crate::hash::fnv1a_bytes;
-use crate::output::write_atomically;
+use crate::sealed::{Kind, Words};
 use simd::Level;
 use std::path::Path;
 
-const MAGIC: &[u8; 8] = b"TRACER\r\n";
-const VERSION: u32 = 2;
-const HEADER: usize = 8 + 4 + 8 + 8;
+const KIND: Kind = Kind {
+    magic: b"TRACER\r\n",
+    version: 2,
+    name: "a saved scene",
+    remedy: "build the scene from its mesh and save it",
+};
 
 impl Scene {
     /// Writes the scene as it is, tree and triangles, to be loaded without building. The file appears whole or not at all.
@@ -44,13 +45,7 @@ impl Scene {
             }
             group.id.iter().for_each(|&id| word(id));
         }
-        write_atomically(path, |out| {
-            out.write_all(MAGIC)?;
-            out.write_all(&VERSION.to_le_bytes())?;
-            out.write_all(&(body.len() as u64).to_le_bytes())?;
-            out.write_all(&fnv1a_bytes(&body).to_le_bytes())?;
-            out.write_all(&body)
-        })
+        KIND.write(path, &body)
     }
 
     /// Reads what [`Scene::save`] wrote, on any machine, to be traced at a level.
@@ -66,33 +61,17 @@ impl Scene {
 }
 
 fn parse(bytes: &[u8], level: Level) -> Result<Scene, String> {
-    let Some((header, body)) = bytes.split_at_checked(HEADER).filter(|(header, _)| header.starts_with(MAGIC)) else {
-        return Err("not a saved scene: build the scene from its mesh and save it".into());
-    };
-    let mut header = Words(&header[8..]);
-    let version = header.word()?;
-    if version != VERSION {
-        return Err(format!(
-            "a saved scene of version {version}, this program reads version {VERSION}: save the scene again"
-        ));
-    }
-    let damaged = |what: String| format!("damaged, {what}: save the scene again");
-    let length = header.long()?;
-    if length != body.len() as u64 {
-        return Err(damaged(format!("{} bytes where there should be {length}", body.len())));
-    }
-    if header.long()? != fnv1a_bytes(body) {
-        return Err(damaged("the checksum is another".into()));
-    }
-    let mut words = Words(body);
+    let damaged = |what: &str| KIND.damaged(what);
+    let mut words = KIND.open(bytes)?;
+    let length = words.len();
     let [meshes, nodes, groups] = [words.word()?, words.word()?, words.word()?].map(|n| n as usize);
     // What the numbers claim is there, before memory is asked for.
-    if body.len() as u128 != 4 * (9 + 2 * meshes as u128 + 56 * nodes as u128 + 40 * groups as u128) {
-        return Err(damaged("its numbers contradict its length".into()));
+    if length as u128 != 4 * (9 + 2 * meshes as u128 + 56 * nodes as u128 + 40 * groups as u128) {
+        return Err(damaged("its numbers contradict its length"));
     }
     let first = (0..meshes).map(|_| words.word()).collect::<Result<Vec<_>, _>>()?;
     if !first.is_sorted() || first.first().is_some_and(|&first| first != 0) {
-        return Err(damaged("its meshes overlap".into()));
+        return Err(damaged("its meshes overlap"));
     }
     let masks = (0..meshes).map(|_| words.word()).collect::<Result<Vec<_>, _>>()?;
     let bounds = Aabb { min: words.floats()?, max: words.floats()? };
@@ -126,37 +105,15 @@ fn parse(bytes: &[u8], level: Level) -> Result<Scene, String> {
     for _ in 0..groups {
         all_groups.push(group(&mut words)?);
     }
-    let bvh = WideBvh::from_parts(all_nodes, all_groups).map_err(damaged)?;
+    let bvh = WideBvh::from_parts(all_nodes, all_groups).map_err(|what| damaged(&what))?;
     Ok(Scene { bvh, level, bounds, first, masks, vertices: None })
-}
-
-/// Bytes taken from the front.
-struct Words<'a>(&'a [u8]);
-
-impl Words<'_> {
-    fn word(&mut self) -> Result<u32, String> {
-        let (word, rest) = self.0.split_first_chunk().ok_or("it ends too early: save the scene again")?;
-        self.0 = rest;
-        Ok(u32::from_le_bytes(*word))
-    }
-
-    fn long(&mut self) -> Result<u64, String> {
-        Ok(u64::from(self.word()?) | u64::from(self.word()?) << 32)
-    }
-
-    fn floats<const N: usize>(&mut self) -> Result<[f32; N], String> {
-        let mut floats = [0.0; N];
-        for x in &mut floats {
-            *x = f32::from_bits(self.word()?);
-        }
-        Ok(floats)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::{HitBatch, Ray, RayBatch};
+    use crate::sealed::{HEADER, with_checksum};
 
     fn scene() -> Scene {
         let mesh = crate::model::builtin("balls:1").expect("a name").expect("a size").mesh;
@@ -168,12 +125,6 @@ mod tests {
         let path = folder.path().join("scene.bin");
         scene().save(&path).expect("written");
         std::fs::read(&path).expect("read")
-    }
-
-    fn with_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
-        let sum = fnv1a_bytes(&bytes[HEADER..]);
-        bytes[20..28].copy_from_slice(&sum.to_le_bytes());
-        bytes
     }
 
     #[test]

@@ -2,6 +2,8 @@
 
 mod bad_input;
 mod batches;
+mod checkpoint;
+mod environment;
 mod interrupt;
 mod pictures;
 mod reports;

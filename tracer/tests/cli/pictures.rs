@@ -160,7 +160,8 @@ fn layers_in_exr() {
     let image = reader.from_buffered(Cursor::new(folder.read("out.exr"))).expect("a picture");
     let channels = &image.layer_data.channel_data.list;
     let names: Vec<String> = channels.iter().map(|c| c.name.to_string()).collect();
-    let expected = "B G R Z albedo.B albedo.G albedo.R material.ID normal.X normal.Y normal.Z primitive.ID variance.Y";
+    let expected =
+        "B G R Z albedo.B albedo.G albedo.R cost.rays material.ID normal.X normal.Y normal.Z primitive.ID variance.Y";
     assert_eq!(names.join(" "), expected);
     let middle = 12 * 32 + 16;
     let at =
@@ -170,6 +171,7 @@ fn layers_in_exr() {
     assert!((z - 5.0).abs() < 0.1 && normal == 1.0 && at("albedo.R") == Some(0.7), "{z} {normal}");
     assert_eq!((at("material.ID"), at("primitive.ID").map(|id| id == 2.0 || id == 3.0)), (Some(0.0), Some(true)));
     assert!(at("variance.Y").is_some_and(|v| v >= 0.0));
+    assert!(at("cost.rays").is_some_and(|n| n > 4.0 && n <= 24.0));
 }
 
 #[test]

@@ -58,6 +58,12 @@ impl Console {
         let _ = writeln!(io::stderr(), "warning: {warning}");
     }
 
+    /// Something that is good to know.
+    pub fn hint(&self, text: &str) {
+        self.clear();
+        let _ = writeln!(io::stderr(), "note: {text}");
+    }
+
     /// Why it ends here.
     pub fn error(&self, error: &Error) {
         self.clear();
@@ -95,6 +101,13 @@ impl Progress for Console {
         bar.set_prefix(name.to_owned());
         bar.tick();
         *self.bar() = Some(bar);
+    }
+
+    fn resume(&self, n: u64) {
+        if let Some(bar) = self.bar().as_ref() {
+            bar.set_position(n);
+            bar.reset_eta();
+        }
     }
 
     fn advance(&self, n: u64) {

@@ -2,12 +2,14 @@
 
 use crate::args::BuildOptions;
 use crate::console::Console;
+use crate::cost::Cost;
 use crate::method::MethodChoice;
 use crate::picture::{self, Kind};
 use crate::render::Args;
+use crate::report::{Subject, Written};
 use crate::workload::{Workload, mrays_per_s, ms};
 use clap::ValueEnum;
-use indicatif::{HumanBytes, HumanCount};
+use indicatif::HumanCount;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -53,9 +55,12 @@ pub struct LightOptions {
     #[arg(long, value_name = "X,Y,W,H")]
     crop: Option<Part>,
     /// Put more than light into an .exr, for whitted, ao and path: distance, normal, albedo, triangle and material of what is seen through the
-    /// middle of each pixel, and the variance of the light
+    /// middle of each pixel, the variance of the light, and the number of rays
     #[arg(long)]
     layers: bool,
+    /// Show the number of rays of each pixel in false colours, in a .png, for whitted, ao and path
+    #[arg(long, value_name = "FILE")]
+    cost: Option<PathBuf>,
     /// Brighten a .png by so many stops
     #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
     exposure: Option<f32>,
@@ -102,6 +107,14 @@ impl LightOptions {
             (self.samples.is_some(), "--samples", integrator != Choice::Eye, not_eye),
             (self.time_limit.is_some(), "--time-limit", integrator != Choice::Eye, not_eye),
             (self.crop.is_some(), "--crop", integrator != Choice::Eye, not_eye),
+            (args.checkpoint.checkpoint.is_some(), "--checkpoint", integrator != Choice::Eye, not_eye),
+            (
+                args.environment.environment.is_some(),
+                "--environment",
+                self.has_bounces(),
+                "is for --integrator whitted and path",
+            ),
+            (self.cost.is_some(), "--cost", integrator != Choice::Eye, not_eye),
             (self.layers, "--layers", integrator != Choice::Eye, not_eye),
             (self.ungrouped, "--ungrouped", self.has_bounces(), "is for --integrator whitted and path"),
             (self.bounces.is_some(), "--bounces", self.has_bounces(), "is for --integrator whitted and path"),
@@ -119,6 +132,13 @@ impl LightOptions {
             if given && !of {
                 return Err(Error::Usage(format!("{name} {purpose}: leave it out")));
             }
+        }
+        args.checkpoint.check()?;
+        args.environment.check()?;
+        if let Some(cost) = &self.cost
+            && Kind::of(cost)? != Kind::Png
+        {
+            return Err(Error::Usage(format!("--cost {}: give a picture that ends in .png", cost.display())));
         }
         let exr = args.output.as_deref().map(Kind::of).transpose()? == Some(Kind::Exr);
         if exr && (self.tone.is_some() || self.exposure.is_some()) {
@@ -182,6 +202,7 @@ impl LightOptions {
             level,
             lanes: args.trace.width,
             group_shading: !self.ungrouped,
+            count_rays: self.layers || self.cost.is_some(),
             ..Config::new(size.width, size.height)
         })
     }
@@ -189,17 +210,12 @@ impl LightOptions {
 
 #[derive(Serialize)]
 struct Report {
-    scene: String,
-    triangles: usize,
-    nodes: usize,
-    build: &'static str,
-    load_ms: f64,
-    build_ms: f64,
-    width: usize,
-    height: usize,
-    camera: String,
+    #[serde(flatten)]
+    subject: Subject,
     integrator: String,
     samples: u32,
+    /// Of them, those of the checkpoint; what comes below is of the others.
+    samples_before: u32,
     seed: u64,
     level: String,
     method: String,
@@ -213,8 +229,10 @@ struct Report {
     /// Rays whose first hit was asked for and rays to lights, after each number of reflections.
     bounces: Vec<[u64; 2]>,
     image_hash: String,
-    output: PathBuf,
-    output_bytes: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cost: Option<Cost>,
+    #[serde(flatten)]
+    written: Written,
 }
 
 /// Renders, writes and reports, on the current rayon pool.
@@ -222,35 +240,34 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let config = args.light.config(args)?;
     let scene = &work.scene;
     let camera = args.picture.camera.unwrap_or_else(|| scene.camera_or_default());
-    let scenery = Scenery::new(scene, &camera);
+    let scenery = match args.environment.open(scene)? {
+        Some(map) => Scenery::in_environment(scene, map),
+        None => Scenery::new(scene, &camera),
+    };
     let choice = args.trace.method(MethodChoice::Auto)?;
     let tree = choice.tree(&work.bvh);
     let method = choice.over(&work.bvh, &tree, config.level, config.lanes, args.trace.form());
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     let means = Means { method: &*method, cx: &mut cx, observer: None, progress: console };
-    let Rendering { image, samples, times, variance } = integrator::render(scene, &scenery, camera, &config, means)?;
+    let (rendering, samples_before) = args.checkpoint.render(scene, &scenery, camera, &config, means, console)?;
     console.clear();
 
+    let cost = args.light.cost.as_ref().map(|path| Cost::write(&rendering, path)).transpose()?;
     let output = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", scene.name)));
+    let Rendering { ref image, samples, ref times, .. } = rendering;
+    let (size, image_hash, times) = ([image.width, image.height], format!("{:016x}", image.hash()), times.clone());
     let output_bytes = if args.light.layers {
         let layers = Layers::new(&scenery, &camera, &config, &*method, &mut cx)?;
-        picture::write_layers(&image, variance, layers, &output)?
+        picture::write_layers(rendering, layers, &output)?
     } else {
-        picture::write(&args.light.developed(&image, &output), &output)?
+        picture::write(&args.light.developed(image, &output), &output)?
     };
     let total_ms = ms(times.total());
     let report = Report {
-        scene: scene.name.clone(),
-        triangles: scene.mesh.triangles.len(),
-        nodes: work.bvh.nodes.len(),
-        build: work.build,
-        load_ms: work.load_ms,
-        build_ms: work.build_ms,
-        width: image.width,
-        height: image.height,
-        camera: camera.to_string(),
+        subject: Subject::new(work, &camera, size),
         integrator: args.light.integrator.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default(),
         samples,
+        samples_before,
         seed: config.seed,
         level: config.level.to_string(),
         method: choice.name(),
@@ -262,18 +279,20 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         rays: times.rays(),
         mrays_per_s: mrays_per_s(times.rays() as usize, total_ms),
         bounces: times.bounces.iter().map(|b| [b.closest, b.any]).collect(),
-        image_hash: format!("{:016x}", image.hash()),
-        output,
-        output_bytes,
+        image_hash,
+        cost,
+        written: Written { output, output_bytes },
     };
     if args.json { console.print_json(&report) } else { console.print(&text(&report)) }
 }
 
 fn text(r: &Report) -> String {
-    let [triangles, nodes, rays] = [r.triangles as u64, r.nodes as u64, r.rays].map(|n| HumanCount(n).to_string());
-    let (output, bytes) = (r.output.display(), HumanBytes(r.output_bytes as u64));
-    let Report { scene, load_ms, build, build_ms, camera, width, height, level, method, threads, .. } = r;
-    let Report { generation_ms, traversal_ms, shading_ms, total_ms, mrays_per_s, integrator, samples, .. } = r;
+    let (subject, written, rays) = (r.subject.text(), r.written.text(), HumanCount(r.rays));
+    let cost = r.cost.as_ref().map(Cost::text).unwrap_or_default();
+    let Subject { width, height, .. } = r.subject;
+    let Report { integrator, samples, level, method, threads, .. } = r;
+    let Report { generation_ms, traversal_ms, shading_ms, total_ms, mrays_per_s, .. } = r;
+    let before = if r.samples_before > 0 { format!(" ({} before)", r.samples_before) } else { String::new() };
     let share = |part: f64| 100.0 * part / total_ms.max(1e-9);
     let [g, t, s] = [*generation_ms, *traversal_ms, *shading_ms].map(share);
     let mut bounces = String::new();
@@ -282,16 +301,12 @@ fn text(r: &Report) -> String {
     }
     format!(
         "\
-scene     {scene}, {triangles} triangles, read in {load_ms:.0} ms
-tree      {build}, {nodes} nodes, built in {build_ms:.0} ms
-camera    {camera}
-rendered  {width}x{height} by {integrator}, samples: {samples}; level {level}, method {method}, threads: {threads}
+{subject}rendered  {width}x{height} by {integrator}, samples: {samples}{before}; level {level}, method {method}, threads: {threads}
   generation {generation_ms:>10.2} ms {g:>5.1} %
   traversal  {traversal_ms:>10.2} ms {t:>5.1} %
   shading    {shading_ms:>10.2} ms {s:>5.1} %
   total      {total_ms:>10.2} ms, {mrays_per_s:.2} Mrays/s ({rays} rays)
   bounce             rays  rays to lights
-{bounces}wrote     {output}, {bytes}
-"
+{bounces}{cost}{written}"
     )
 }

@@ -2,8 +2,11 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod checkpoint;
 mod compare;
 mod console;
+mod cost;
+mod environment;
 mod generate;
 mod info;
 mod light;
@@ -12,6 +15,7 @@ mod method;
 mod npy;
 mod picture;
 mod render;
+mod report;
 mod trace;
 mod workload;
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use tracer::Error;
 use tracer::output::write_atomically;
 use tracer::render::Image;
-use tracer::render::integrator::Layers;
+use tracer::render::integrator::{Layers, Rendering};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -43,10 +43,18 @@ pub fn write(image: &Image, path: &Path) -> Result<usize, Error> {
     Ok(bytes.len())
 }
 
+/// Three bytes for each pixel, as a .png.
+pub fn write_rgb8(width: usize, height: usize, pixels: &[u8], path: &Path) -> Result<(), Error> {
+    let encoded = rgb8(width, height, pixels);
+    let bytes = encoded.map_err(|source| Error::Io { action: "encode", path: PathBuf::from(path), source })?;
+    write_atomically(path, |out| out.write_all(&bytes))
+}
+
 /// The light and what else is known of each pixel, in one layer with named channels (.exr): R G B; Y of the variance; Z, the distance; normal,
-/// albedo; numbers of triangles and materials.
-pub fn write_layers(image: &Image, variance: Vec<f32>, layers: Layers, path: &Path) -> Result<usize, Error> {
+/// albedo; numbers of triangles and materials; rays for all samples together.
+pub fn write_layers(rendering: Rendering, layers: Layers, path: &Path) -> Result<usize, Error> {
     use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, WritableImage};
+    let Rendering { image, variance, rays, .. } = rendering;
     let column = |pixels: &[[f32; 3]], k: usize| FlatSamples::F32(pixels.iter().map(|p| p[k]).collect());
     let mut channels = exr::prelude::SmallVec::new();
     for (names, pixels) in [
@@ -62,6 +70,7 @@ pub fn write_layers(image: &Image, variance: Vec<f32>, layers: Layers, path: &Pa
     channels.push(AnyChannel::new("variance.Y", FlatSamples::F32(variance)));
     channels.push(AnyChannel::new("primitive.ID", FlatSamples::U32(layers.primitive)));
     channels.push(AnyChannel::new("material.ID", FlatSamples::U32(layers.material)));
+    channels.push(AnyChannel::new("cost.rays", FlatSamples::U32(rays)));
     let size = (image.width, image.height);
     let layer = Layer::new(size, LayerAttributes::default(), Encoding::default(), AnyChannels::sort(channels));
     let mut bytes = Vec::new();
@@ -76,14 +85,18 @@ pub fn write_layers(image: &Image, variance: Vec<f32>, layers: Layers, path: &Pa
 }
 
 fn png(image: &Image) -> io::Result<Vec<u8>> {
+    rgb8(image.width, image.height, &image.to_srgb8())
+}
+
+fn rgb8(width: usize, height: usize, pixels: &[u8]) -> io::Result<Vec<u8>> {
     let side = |n: usize| u32::try_from(n).map_err(io::Error::other);
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, side(image.width)?, side(image.height)?);
+    let mut encoder = png::Encoder::new(&mut bytes, side(width)?, side(height)?);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&image.to_srgb8())?;
+    writer.write_image_data(pixels)?;
     writer.finish()?;
     Ok(bytes)
 }

@@ -1,12 +1,15 @@
 //! `tracer render`: a picture of a scene.
 
 use crate::args::{self, BuildOptions, PictureOptions, TraceOptions};
+use crate::checkpoint::CheckpointOptions;
 use crate::console::Console;
+use crate::environment::EnvironmentOptions;
 use crate::light::{self, LightOptions};
 use crate::method::MethodChoice;
 use crate::picture;
+use crate::report::{Subject, Written};
 use crate::workload::{Workload, mrays_per_s, ms};
-use indicatif::{HumanBytes, HumanCount};
+use indicatif::HumanCount;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -24,6 +27,8 @@ Examples:
   tracer render atrium.obj.zst --size 1920x1080 --camera -60,86,10/0,40,0 --shadows
   tracer render rings --method auto                 as many rays together as agree
   tracer render tree:8 -o tree.exr --level sse2 --width 4 --threads 1 --json
+  tracer render garden.obj --integrator path --samples 256 --mis --environment noon.hdr --environment-rotation 90
+  tracer render room.obj --integrator path --samples 4096 --checkpoint room.film
   tracer render room.obj --integrator path --samples 64 --bounces 4 --mis --method auto --tone aces
   tracer render balls --integrator whitted --samples 4 --method auto
   tracer render atrium.obj --integrator ao --samples 16 --distance 100 --method auto")]
@@ -41,6 +46,10 @@ pub struct Args {
     #[command(flatten)]
     pub light: LightOptions,
     #[command(flatten)]
+    pub environment: EnvironmentOptions,
+    #[command(flatten)]
+    pub checkpoint: CheckpointOptions,
+    #[command(flatten)]
     pub build: BuildOptions,
     #[command(flatten)]
     pub trace: TraceOptions,
@@ -48,15 +57,8 @@ pub struct Args {
 
 #[derive(Serialize)]
 struct Report {
-    scene: String,
-    triangles: usize,
-    nodes: usize,
-    build: &'static str,
-    load_ms: f64,
-    build_ms: f64,
-    width: usize,
-    height: usize,
-    camera: String,
+    #[serde(flatten)]
+    subject: Subject,
     shadows: bool,
     level: String,
     method: String,
@@ -71,8 +73,8 @@ struct Report {
     hits: usize,
     hits_hash: Option<String>,
     image_hash: Option<String>,
-    output: PathBuf,
-    output_bytes: usize,
+    #[serde(flatten)]
+    written: Written,
 }
 
 pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
@@ -131,15 +133,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let output_bytes = picture::write(&args.light.developed(&image, &output), &output)?;
     let rays = size.pixels() + if shadows { hits * scene.lights_or_headlight(&camera).len() } else { 0 };
     let report = Report {
-        scene: scene.name.clone(),
-        triangles: scene.mesh.triangles.len(),
-        nodes: work.bvh.nodes.len(),
-        build: work.build,
-        load_ms: work.load_ms,
-        build_ms: work.build_ms,
-        width: size.width,
-        height: size.height,
-        camera: camera.to_string(),
+        subject: Subject::new(work, &camera, [size.width, size.height]),
         shadows,
         level: level.to_string(),
         method: choice.name(),
@@ -154,8 +148,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         hits,
         hits_hash,
         image_hash,
-        output,
-        output_bytes,
+        written: Written { output, output_bytes },
     };
     if args.json { console.print_json(&report) } else { console.print(&text(&report)) }
 }
@@ -167,23 +160,19 @@ fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
 }
 
 fn text(r: &Report) -> String {
-    let [triangles, nodes, rays] = [r.triangles, r.nodes, r.rays].map(|n| HumanCount(n as u64).to_string());
+    let rays = HumanCount(r.rays as u64);
     let shadows = if r.shadows { " and shadow" } else { "" };
-    let covered = 100.0 * r.hits as f64 / (r.width * r.height) as f64;
-    let (output, bytes) = (r.output.display(), HumanBytes(r.output_bytes as u64));
-    let Report { scene, load_ms, build, build_ms, camera, width, height, level, method, packet, threads, .. } = r;
-    let Report { eye_ms, cast_ms, shade_ms, total_ms, mrays_per_s, .. } = r;
+    let (subject, written) = (r.subject.text(), r.written.text());
+    let Subject { width, height, .. } = r.subject;
+    let covered = 100.0 * r.hits as f64 / (width * height) as f64;
+    let Report { level, method, packet, threads, eye_ms, cast_ms, shade_ms, total_ms, mrays_per_s, .. } = r;
     format!(
         "\
-scene     {scene}, {triangles} triangles, read in {load_ms:.0} ms
-tree      {build}, {nodes} nodes, built in {build_ms:.0} ms
-camera    {camera}
-rendered  {width}x{height}, level {level}, method {method}, {packet} lanes, threads: {threads}; {covered:.1} % of the picture is covered
+{subject}rendered  {width}x{height}, level {level}, method {method}, {packet} lanes, threads: {threads}; {covered:.1} % of the picture is covered
   eye rays {eye_ms:>9.2} ms
   casting  {cast_ms:>9.2} ms, {mrays_per_s:.2} Mrays/s ({rays} eye{shadows} rays)
   shading  {shade_ms:>9.2} ms
   total    {total_ms:>9.2} ms
-wrote     {output}, {bytes}
-"
+{written}"
     )
 }

@@ -22,6 +22,13 @@ pub struct Crop {
     pub height: usize,
 }
 
+impl Crop {
+    /// The number of a pixel of [`pixels`] in the part, row by row.
+    pub(super) fn place(&self, pixel: u32) -> usize {
+        ((pixel >> 16) as usize - self.y) * self.width + (pixel & 0xffff) as usize - self.x
+    }
+}
+
 /// The pixels of a part in the order of rays: tiles of 4x4 along a Z-curve, pixels along one in each. The row is in the upper sixteen bits of
 /// each, the column in the lower ones, counted from the whole picture's corner.
 pub(super) fn pixels(crop: &Crop) -> Vec<u32> {

@@ -1,7 +1,7 @@
 //! What is seen through the middle of each pixel: what a denoiser or a compositor wants to know.
 
 use super::place::Place;
-use super::{Config, Crop, camera};
+use super::{Config, camera};
 use crate::Error;
 use crate::geometry::HitBatch;
 use crate::method::{Context, Method};
@@ -36,7 +36,7 @@ impl Layers {
         cx: &mut Context<'_>,
     ) -> Result<Self, Error> {
         config.validate()?;
-        let crop = config.crop.unwrap_or(Crop { x: 0, y: 0, width: config.width, height: config.height });
+        let crop = config.part();
         let pixels = camera::pixels(&crop);
         let rays = camera::rays(&Config { samples: 1, ..*config }, camera, &pixels, 0);
         let mut hits = HitBatch::new();
@@ -52,8 +52,7 @@ impl Layers {
                 continue;
             }
             let place = Place::<f32>::load(scenery, &rays.blocks()[i / 16], &hits.blocks()[i / 16], i % 16);
-            let (x, y) = ((pixel & 0xffff) as usize - crop.x, (pixel >> 16) as usize - crop.y);
-            let at = y * crop.width + x;
+            let at = crop.place(*pixel);
             let material = place.material.0;
             layers.depth[at] = place.distance;
             layers.normal[at] = [place.normal.x, place.normal.y, place.normal.z];

@@ -3,16 +3,21 @@
 
 mod ao;
 mod camera;
+mod checkpoint;
 mod columns;
+mod film;
 mod groups;
 mod layers;
 mod lists;
 mod place;
 mod shade;
+mod sky;
 mod times;
 mod wave;
 
 pub use camera::Crop;
+pub use checkpoint::Identity;
+pub use film::Film;
 pub use layers::Layers;
 pub use times::{Bounce, Means, Observer, Query, Times};
 
@@ -90,6 +95,8 @@ pub struct Config {
     pub lanes: Width,
     /// Whether hits are shaded together by the model of their material (Boulos 2008, section 4.6): the same picture, another speed.
     pub group_shading: bool,
+    /// Whether the rays of each pixel are counted: [`Rendering::rays`].
+    pub count_rays: bool,
     /// Paths at once; each takes some 300 bytes.
     pub batch: usize,
 }
@@ -109,8 +116,14 @@ impl Config {
             level: Level::best(),
             lanes: Width::Auto,
             group_shading: true,
+            count_rays: false,
             batch: 1 << 20,
         }
+    }
+
+    /// The part that is wanted, or the whole.
+    pub(super) fn part(&self) -> Crop {
+        self.crop.unwrap_or(Crop { x: 0, y: 0, width: self.width, height: self.height })
     }
 
     /// # Errors
@@ -159,7 +172,9 @@ pub struct Rendering {
     pub samples: u32,
     /// Of each pixel, how far the mean may be off: the variance of the mean's luminance, estimated from the samples; zero for a single one.
     pub variance: Vec<f32>,
-    /// What it took.
+    /// Of each pixel, the rays that were traced for all its samples; empty unless [`Config::count_rays`] asks for it.
+    pub rays: Vec<u32>,
+    /// What it took, from where it was resumed.
     pub times: Times,
 }
 
@@ -199,7 +214,7 @@ pub fn render(
     config.validate()?;
     camera.validate()?;
     let Integrator::Eye { shadows } = config.integrator else {
-        return wave::render(scenery, &camera, config, means);
+        return resume(scenery, camera, config, means, &mut Film::new(config), &mut |_| Ok(()));
     };
     let Config { width, height, level, lanes, .. } = *config;
     let settings = Settings { width, height, level, lanes, shadows };
@@ -214,5 +229,64 @@ pub fn render(
     let hits = frame.hits().iter().filter(|hit| !hit.is_miss()).count();
     let any = if shadows { hits * model.lights_or_headlight(&camera).len() } else { 0 };
     *times.bounce(0) = Bounce { closest: (width * height) as u64, any: any as u64 };
-    Ok(Rendering { variance: vec![0.0; image.pixels.len()], image, samples: 1, times })
+    Ok(Rendering { variance: vec![0.0; image.pixels.len()], rays: Vec::new(), image, samples: 1, times })
+}
+
+/// Told how far a picture has come, after each batch of paths; an error ends the work.
+pub type After<'a> = dyn FnMut(&Film) -> Result<(), Error> + 'a;
+
+/// [`render`] with secondary rays, going on from a film: one of this picture ([`Film::new`], [`Film::load`]) that has no more samples than are asked
+/// for. Whatever ends the work, the film can be gone on with, and the finished picture has the bits of one made at once.
+///
+/// ```
+/// use tracer::bvh::{BuildConfig, Bvh};
+/// use tracer::method::{Context, Packet, Width};
+/// use tracer::model::Model;
+/// use tracer::progress::Silent;
+/// use tracer::render::{Scenery, integrator::{self, Config, Film, Identity, Means}};
+///
+/// # fn main() -> Result<(), tracer::Error> {
+/// # let (model, _) = Model::open("balls:1", &Silent)?;
+/// # let camera = model.camera_or_default();
+/// # let scenery = Scenery::new(&model, &camera);
+/// # let bvh = Bvh::build(&model.mesh, &BuildConfig::default(), &Silent)?;
+/// # let path = std::env::temp_dir().join(format!("checkpoint-{}", std::process::id()));
+/// let config = Config { samples: 4, ..Config::new(32, 32) };
+/// let identity = Identity::new(&model, &scenery, &camera, &config);
+/// let mut film = if path.exists() { Film::load(&path, &identity, &config)? } else { Film::new(&config) };
+/// # let method = Packet::new(&bvh, config.level, Width::Auto);
+/// let means = Means { method: &method, cx: &mut Context::default(), observer: None, progress: &Silent };
+/// let mut keep = |film: &Film| film.save(&path, &identity);
+/// let rendering = integrator::resume(&scenery, camera, &config, means, &mut film, &mut keep)?;
+/// assert_eq!(rendering.samples, 4);
+/// # std::fs::remove_file(&path).expect("it is there");
+/// # Ok(())
+/// # }
+/// ```
+///
+/// # Errors
+/// [`Error::Usage`] for what makes no sense, the picture of three passes and the film of another picture among it; [`Error::Cancelled`]; what `after`
+/// returns.
+pub fn resume(
+    scenery: &Scenery,
+    camera: Camera,
+    config: &Config,
+    means: Means<'_, '_>,
+    film: &mut Film,
+    after: &mut After<'_>,
+) -> Result<Rendering, Error> {
+    config.validate()?;
+    camera.validate()?;
+    if let Integrator::Eye { .. } = config.integrator {
+        return Err(Error::Usage("the picture of three passes is made at once: choose another integrator".into()));
+    }
+    if film.crop != config.part() || film.done > film.pixels() * u64::from(config.samples) {
+        return Err(Error::Usage("the film is of another picture, or has more samples: begin with a new one".into()));
+    }
+    if config.count_rays && film.rays.is_empty() {
+        return Err(Error::Usage("the film does not count rays: begin with a new one".into()));
+    }
+    // Once counted, counted on.
+    let config = Config { count_rays: !film.rays.is_empty(), ..*config };
+    wave::render(scenery, &camera, &config, means, film, after)
 }

@@ -4,6 +4,7 @@ use super::columns::{Columns, ROWS, Rows};
 use super::groups::{Groups, NOTHING, Step};
 use super::lists::{DENSITY, Lists, Paths, Shadows, THROUGHPUT, ten};
 use super::place::Place;
+use super::sky::{Around, SkySpots};
 use crate::geometry::{HitBlock, RayBlock, Vec3};
 use crate::lanes::{self, Lanes, Width};
 use crate::model::Light;
@@ -55,11 +56,11 @@ pub(super) struct Shaded {
 #[derive(Debug, Clone)]
 pub(super) struct Scratch {
     place: Columns<14>,
-    light: Columns<7>,
-    next: Columns<10>,
-    models: Box<[u32; ROWS]>,
+    pub(super) light: Columns<7>,
+    pub(super) next: Columns<10>,
+    pub(super) models: Box<[u32; ROWS]>,
     materials: Box<[u32; ROWS]>,
-    pixels: Box<[u32; ROWS]>,
+    pub(super) pixels: Box<[u32; ROWS]>,
     groups: Groups,
 }
 
@@ -71,9 +72,11 @@ const TO_EYE: usize = 9;
 const OFFSET: usize = 12;
 const SIDE: usize = 13;
 /// Of [`Scratch::light`].
-const TO_LIGHT: usize = 0;
-const RADIANCE: usize = 3;
-const LIGHT_DENSITY: usize = 6;
+pub(super) const TO_LIGHT: usize = 0;
+pub(super) const RADIANCE: usize = 3;
+pub(super) const LIGHT_DENSITY: usize = 6;
+/// Of [`Scratch::next`], until directions are chosen: what comes from the environment map where nothing is hit.
+pub(super) const AROUND: usize = 0;
 
 impl Scratch {
     pub(super) fn new() -> Self {
@@ -114,14 +117,25 @@ impl Lanes for Places<'_, '_> {
     }
 }
 
-struct ToLights<'a, 'b>(&'a mut Portion<'b>, Source<'a>, &'a mut Shadows);
+struct Spots<'a, 'b>(&'a mut Portion<'b>, Source<'a>);
+
+impl Lanes for Spots<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<F: Float>(self) {
+        self.0.spots::<F>(self.1);
+    }
+}
+
+struct ToLights<'a, 'b>(&'a mut Portion<'b>, &'a mut Shadows);
 
 impl Lanes for ToLights<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run<F: Float>(self) {
-        self.0.lights::<F>(self.1, self.2);
+        self.0.lights::<F>(self.1);
     }
 }
 
@@ -146,7 +160,7 @@ enum Source<'a> {
 impl Portion<'_> {
     /// The part of a list of the paths that belongs to this portion.
     #[inline(always)]
-    fn path_list(&self, number: usize) -> &[f32] {
+    pub(super) fn path_list(&self, number: usize) -> &[f32] {
         &self.wave.paths.list(number)[self.first..][..self.len]
     }
 
@@ -198,7 +212,11 @@ impl Portion<'_> {
                 let ambient = words3::<F>(materials, place.material, Scenery::MATERIAL, 14, hit);
                 radiance = radiance + ambient.scale(F::splat(scenery.ambient));
             }
-            let radiance = Vec3::select(hit, radiance, Vec3::splat(scenery.environment)) * self.throughput(first);
+            let around = match scenery.map {
+                Some(_) => self.scratch.next.load3(AROUND, first),
+                None => Vec3::splat(scenery.environment),
+            };
+            let radiance = Vec3::select(hit, radiance, around) * self.throughput(first);
             let some = there & is_light(radiance);
             if some.any() {
                 light.push(some, [radiance.x, radiance.y, radiance.z], slots);
@@ -207,14 +225,9 @@ impl Portion<'_> {
         }
     }
 
-    /// Second step: a light for each place, and the ray to it.
+    /// Second step: a light for each place.
     #[inline(always)]
-    fn lights<F: Float>(&mut self, source: Source<'_>, shadows: &mut Shadows) {
-        if let Source::Any(lights) = source
-            && lights.is_empty()
-        {
-            return;
-        }
+    fn spots<F: Float>(&mut self, source: Source<'_>) {
         let Wave { sampler, sample, depth, .. } = *self.wave;
         let mut first = 0;
         while first < self.len {
@@ -242,7 +255,11 @@ impl Portion<'_> {
             columns.store(LIGHT_DENSITY, first, light.density);
             first += F::LANES;
         }
+    }
 
+    /// Third step: what comes of it, and the ray to it.
+    #[inline(always)]
+    fn lights<F: Float>(&mut self, shadows: &mut Shadows) {
         let Scratch { place, light, materials, groups, .. } = &mut *self.scratch;
         let list = |i| &self.wave.paths.list(THROUGHPUT + i)[self.first..][..self.len];
         let throughput = [list(0), list(1), list(2)];
@@ -265,7 +282,7 @@ impl Portion<'_> {
         }
     }
 
-    /// Third step: a direction for each place, and the ray that goes on.
+    /// Fourth step: a direction for each place, and the ray that goes on.
     #[inline(always)]
     fn directions<F: Float>(&mut self, branch: Branch, paths: &mut Paths) {
         let mut first = 0;
@@ -313,7 +330,7 @@ fn share_of_emission<F: Float>(lights: &Lights, emission: Vec3<F>, density: F, p
 
 /// 1 / (1 + ratio^2); nothing where the own density is zero.
 #[inline(always)]
-fn power_heuristic<F: Float>(ratio: F, own: F) -> F {
+pub(super) fn power_heuristic<F: Float>(ratio: F, own: F) -> F {
     let one = F::splat(1.0);
     F::select(F::splat(0.0).lt(own), one / (one + ratio * ratio), F::splat(0.0))
 }
@@ -419,7 +436,8 @@ impl<F: Float> Step<F> for Directions<'_> {
             let survivor = throughput.scale(F::splat(1.0) / chance);
             throughput = Vec3::select(survival.lt(chance), survivor, Vec3::splat([0.0; 3]));
         }
-        let density = if rules.mis { chosen.density } else { F::select(chosen.density.lt(infinity), zero, infinity) };
+        let by_chance = zero.le(chosen.density) & chosen.density.lt(infinity);
+        let density = if rules.mis { chosen.density } else { F::select(by_chance, zero, chosen.density) };
         self.next.set3(0, rows, origin);
         self.next.set3(3, rows, direction);
         self.next.set3(THROUGHPUT, rows, throughput);
@@ -440,11 +458,26 @@ pub(super) fn shade(level: Level, width: Width, mut portion: Portion<'_>) -> Sha
     let mut shaded = Shaded { light: Lists::new(), shadows: Lists::new(), paths: Lists::new() };
     let Wave { scenery, rules, .. } = *portion.wave;
     shaded.light.reserve(portion.len);
+    if let Some(map) = &scenery.map {
+        lanes::run_long(level, width, Around(&mut portion, map));
+    }
     lanes::run_long(level, width, Places(&mut portion, &mut shaded.light));
     let (points, others) =
         if rules.whitted { (&scenery.points[..], &scenery.lamps) } else { (&[][..], &scenery.lights) };
-    for source in points.iter().map(|&point| Source::Point(point)).chain([Source::Any(others)]) {
-        lanes::run_long(level, width, ToLights(&mut portion, source, &mut shaded.shadows));
+    let any = (!others.is_empty()).then_some(Source::Any(others));
+    let sky = scenery.map.as_ref().filter(|map| map.weight() > 0.0);
+    for source in points.iter().map(|&point| Source::Point(point)).chain(any) {
+        lanes::run_long(level, width, Spots(&mut portion, source));
+        if let (false, Some(map)) = (rules.whitted, sky) {
+            lanes::run_long(level, width, SkySpots(&mut portion, map, scenery.lights.environment()));
+        }
+        lanes::run_long(level, width, ToLights(&mut portion, &mut shaded.shadows));
+    }
+    if let Some(map) = sky
+        && (rules.whitted || any.is_none())
+    {
+        lanes::run_long(level, width, SkySpots(&mut portion, map, 1.0));
+        lanes::run_long(level, width, ToLights(&mut portion, &mut shaded.shadows));
     }
     let branches: &[Branch] = match (rules.last, rules.whitted) {
         (true, _) => &[],

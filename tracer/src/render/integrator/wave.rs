@@ -4,13 +4,12 @@ use super::columns::ROWS;
 use super::lists::{CONTRIBUTION, END, Lists, Paths, Shadows, fill};
 use super::shade::{Portion, Rules, Scratch, Shaded, Wave};
 use super::times::timed;
-use super::{Config, Crop, Integrator, Means, Query, Rendering, Times, ao, camera, shade};
+use super::{After, Config, Film, Integrator, Means, Query, Rendering, Times, ao, camera, shade};
 use crate::Error;
 use crate::geometry::{HitBatch, RayBatch};
 use crate::method::BitVec;
 use crate::model::Camera;
-use crate::render::material::luminance_of;
-use crate::render::{Image, Sampler, Scenery};
+use crate::render::{Sampler, Scenery};
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -19,72 +18,37 @@ pub(super) fn render(
     camera: &Camera,
     config: &Config,
     means: Means<'_, '_>,
+    film: &mut Film,
+    after: &mut After<'_>,
 ) -> Result<Rendering, Error> {
-    let whole = Crop { x: 0, y: 0, width: config.width, height: config.height };
-    let crop = config.crop.unwrap_or(whole);
-    let pixels = camera::pixels(&crop);
-    let units = pixels.len() as u64 * u64::from(config.samples);
-    means.progress.stage("render", units);
-    let mut film = Film::new(crop);
+    let pixels = camera::pixels(&film.crop);
+    means.progress.stage("render", film.pixels() * u64::from(config.samples));
+    means.progress.resume(film.done);
     let mut waves = Waves { scenery, camera, config, means, times: Times::default(), memory: Memory::default() };
     let start = Instant::now();
-    let mut done = 0;
-    while done < config.samples && (done == 0 || config.time_limit.is_none_or(|limit| start.elapsed() < limit)) {
-        for pixels in pixels.chunks(config.batch) {
-            waves.sample(pixels, done)?;
-            let radiance = &waves.memory.radiance;
-            timed(&mut waves.times.shading, || film.add(pixels, radiance));
+    let in_time = || config.time_limit.is_none_or(|limit| start.elapsed() < limit);
+    while film.ahead() > 0 || film.samples() < config.samples && (film.samples() == 0 || in_time()) {
+        let sample = film.samples();
+        for pixels in pixels[film.ahead()..].chunks(config.batch) {
+            waves.sample(pixels, sample)?;
+            let Memory { radiance, traced, .. } = &waves.memory;
+            timed(&mut waves.times.shading, || film.add(pixels, radiance, traced));
             let mrays = waves.times.rays() as f64 * 1e-6 / waves.times.total().as_secs_f64().max(1e-9);
             waves.means.progress.note(&format!("{mrays:.1} Mrays/s"));
             waves.means.progress.advance(pixels.len() as u64);
+            after(film)?;
             waves.means.progress.check()?;
         }
-        done += 1;
     }
-    Ok(film.finish(done, waves.times))
-}
-
-/// Sums over samples, in their order.
-struct Film {
-    crop: Crop,
-    sums: Vec<[f32; 3]>,
-    squares: Vec<f32>,
-}
-
-impl Film {
-    fn new(crop: Crop) -> Self {
-        let n = crop.width * crop.height;
-        Self { crop, sums: vec![[0.0; 3]; n], squares: vec![0.0; n] }
-    }
-
-    fn add(&mut self, pixels: &[u32], radiance: &[[f32; 3]]) {
-        for (&pixel, rgb) in pixels.iter().zip(radiance) {
-            let (x, y) = ((pixel & 0xffff) as usize - self.crop.x, (pixel >> 16) as usize - self.crop.y);
-            let at = y * self.crop.width + x;
-            let sum = &mut self.sums[at];
-            *sum = [sum[0] + rgb[0], sum[1] + rgb[1], sum[2] + rgb[2]];
-            let luminance = luminance_of(*rgb);
-            self.squares[at] += luminance * luminance;
-        }
-    }
-
-    fn finish(self, samples: u32, times: Times) -> Rendering {
-        let n = samples as f32;
-        let mean: Vec<[f32; 3]> = self.sums.iter().map(|sum| sum.map(|c| c / n)).collect();
-        let spread = |(square, mean): (&f32, &[f32; 3])| {
-            let luminance = luminance_of(*mean);
-            (square / n - luminance * luminance).max(0.0) / (n - 1.0).max(1.0)
-        };
-        let variance = self.squares.iter().zip(&mean).map(spread).collect();
-        let image = Image { width: self.crop.width, height: self.crop.height, pixels: mean };
-        Rendering { image, samples, variance, times }
-    }
+    Ok(film.rendering(waves.times))
 }
 
 /// What is used again by each wave.
 #[derive(Debug)]
 struct Memory {
     radiance: Vec<[f32; 3]>,
+    /// Rays of each slot, if they are counted.
+    traced: Vec<u32>,
     rays: RayBatch,
     paths: Paths,
     shadows: Shadows,
@@ -99,6 +63,7 @@ impl Default for Memory {
     fn default() -> Self {
         Self {
             radiance: Vec::new(),
+            traced: Vec::new(),
             rays: RayBatch::new(),
             paths: Lists::new(),
             shadows: Lists::new(),
@@ -128,6 +93,10 @@ impl Waves<'_, '_, '_> {
             memory.rays = camera::rays(self.config, self.camera, pixels, sample);
             memory.radiance.clear();
             memory.radiance.resize(pixels.len(), [0.0; 3]);
+            memory.traced.clear();
+            if self.config.count_rays {
+                memory.traced.resize(pixels.len(), 1);
+            }
         });
         match self.config.integrator {
             Integrator::AmbientOcclusion { distance } => self.occlusion(pixels, sample, distance),
@@ -161,6 +130,7 @@ impl Waves<'_, '_, '_> {
                 shadows.append(more);
             }
         });
+        self.count();
         self.any(0)
     }
 
@@ -217,7 +187,21 @@ impl Waves<'_, '_, '_> {
             ends.resize(paths.len(), f32::INFINITY);
             fill(rays, paths, starts, ends);
         });
+        self.count();
         Ok(())
+    }
+
+    /// Counts the rays that come of hits, if that is wanted.
+    fn count(&mut self) {
+        if !self.config.count_rays {
+            return;
+        }
+        let Memory { traced, paths, shadows, .. } = &mut self.memory;
+        for lists in [paths, shadows] {
+            for &slot in &lists.slots[..lists.len()] {
+                traced[slot as usize] += 1;
+            }
+        }
     }
 
     /// The light along rays that nothing is in the way of.

@@ -38,6 +38,6 @@ impl Model for Mirror {
 
     #[inline(always)]
     fn sample<F: Float>(parameters: &Parameters<F>, to_eye: Vec3<F>, _: [F; 2], _: F) -> Sample<F> {
-        Sample { to_light: reflected(to_eye), weight: parameters.specular, density: F::splat(0.0) }
+        Sample { to_light: reflected(to_eye), weight: parameters.specular, density: F::splat(-1.0) }
     }
 }

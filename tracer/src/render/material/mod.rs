@@ -61,7 +61,8 @@ pub(crate) struct Sample<F: Float> {
     /// The model's value times the cosine over the density: what of the light from there goes to the eye. Zero where there is no
     /// direction.
     pub(crate) weight: Vec3<F>,
-    /// Density per solid angle; infinite where the direction is the only one, zero where light sources are not to be counted.
+    /// Density per solid angle; infinite where the direction is the only one; negative where it is, but lamps are not to be counted, as they are
+    /// seen in another way.
     pub(crate) density: F,
 }
 
