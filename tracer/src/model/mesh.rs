@@ -83,6 +83,29 @@ impl Mesh {
         in_range("vertex", &self.triangles, self.positions.len(), None)?;
         in_range("normal", &self.normal_indices, self.normals.len(), Some(Self::FLAT))
     }
+
+    /// Makes normals unit vectors, and triangles flat that have one of length zero; without normals where all are flat.
+    pub(super) fn unit_normals(&mut self) {
+        let zero: Vec<bool> = self.normals.iter_mut().map(|n| !make_unit(n)).collect();
+        for triple in self.normal_indices.iter_mut().filter(|t| **t != Self::FLAT) {
+            if triple.iter().any(|&n| zero[n as usize]) {
+                *triple = Self::FLAT;
+            }
+        }
+        if self.normal_indices.iter().all(|t| *t == Self::FLAT) {
+            (self.normals, self.normal_indices) = (Vec::new(), Vec::new());
+        }
+    }
+}
+
+/// False when the vector is zero. One that is of unit length but for rounding keeps its bits.
+fn make_unit(normal: &mut [f32; 3]) -> bool {
+    let square: f64 = normal.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
+    if (square - 1.0).abs() > 4.0 * f64::from(f32::EPSILON) && square > 0.0 {
+        let length = square.sqrt();
+        *normal = normal.map(|x| (f64::from(x) / length) as f32);
+    }
+    square > 0.0
 }
 
 /// Every index is below `len`, unless the whole triple is `except`.

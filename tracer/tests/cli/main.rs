@@ -5,6 +5,7 @@ mod batches;
 mod interrupt;
 mod pictures;
 mod reports;
+mod scenes;
 
 use std::fs;
 use std::path::Path;

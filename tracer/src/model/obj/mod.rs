@@ -40,20 +40,7 @@ pub fn read(path: &Path, progress: &dyn Progress) -> Result<(Model, Vec<String>)
     let mut warnings = Vec::new();
     let library = mtl::read(path, &outline, &mut warnings)?;
     let materials = assign_materials(&mut mesh, &outline, library, path, &mut warnings);
-    let name = stem(path).unwrap_or_default();
-    // Many exporters write an ambient coefficient of 1 for everything: at full light it would wash the picture out.
-    let ambient = 0.1;
-    let scene = Model { name, mesh, materials, lights: Vec::new(), camera: None, ambient, background: Model::SKY };
-    Ok((scene, warnings))
-}
-
-/// The file's name without `.obj`, `.obj.gz` or `.obj.zst`.
-fn stem(path: &Path) -> Option<String> {
-    let inner = match path.extension()?.to_ascii_lowercase().to_str() {
-        Some("gz" | "zst") => Path::new(path.file_stem()?),
-        _ => path,
-    };
-    Some(inner.file_stem()?.to_string_lossy().into_owned())
+    Ok((Model { materials, ..Model::of_mesh(path, mesh) }, warnings))
 }
 
 /// Lets `tobj` read the tidied text. Nothing in it opens a new model, so there is one, with all faces in file order.
@@ -85,25 +72,7 @@ fn finish_normals(mesh: &mut Mesh, outline: &Outline) {
     for run in &outline.flat {
         mesh.normal_indices[run.clone()].fill(Mesh::FLAT);
     }
-    let zero: Vec<bool> = mesh.normals.iter_mut().map(|n| !make_unit(n)).collect();
-    for triple in mesh.normal_indices.iter_mut().filter(|t| **t != Mesh::FLAT) {
-        if triple.iter().any(|&n| zero[n as usize]) {
-            *triple = Mesh::FLAT;
-        }
-    }
-    if mesh.normal_indices.iter().all(|t| *t == Mesh::FLAT) {
-        (mesh.normals, mesh.normal_indices) = (Vec::new(), Vec::new());
-    }
-}
-
-/// False when the vector is zero. One that is of unit length but for rounding keeps its bits.
-fn make_unit(normal: &mut [f32; 3]) -> bool {
-    let square: f64 = normal.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
-    if (square - 1.0).abs() > 4.0 * f64::from(f32::EPSILON) && square > 0.0 {
-        let length = square.sqrt();
-        *normal = normal.map(|x| (f64::from(x) / length) as f32);
-    }
-    square > 0.0
+    mesh.unit_normals();
 }
 
 /// Gives each triangle its material; those that no library has are made up.

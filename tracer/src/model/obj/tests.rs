@@ -221,7 +221,7 @@ fn reflection_models_of_a_library() {
 #[test]
 fn a_scene_is_named_after_its_file() {
     for (file, name) in [("a.obj", "a"), ("x/b.v2.OBJ.gz", "b.v2"), ("c.obj.zst", "c"), ("d.zst", "d")] {
-        assert_eq!(stem(Path::new(file)).as_deref(), Some(name));
+        assert_eq!(crate::model::stem(Path::new(file)).as_deref(), Some(name));
     }
 }
 
