@@ -2,6 +2,8 @@
 
 mod camera;
 mod decompress;
+#[cfg(feature = "gltf")]
+pub mod gltf;
 mod light;
 mod material;
 mod mesh;
@@ -45,7 +47,8 @@ impl Model {
     pub const SKY: [f32; 3] = [0.078, 0.361, 0.753];
 
     /// The scene that a user names: a built-in one ([`builtin`]: `balls`, `rings:3` ...) or a file (`.obj`: [`obj::read`], `.ply`:
-    /// [`ply::read`], both as `.gz` and `.zst` too; a file called like a built-in is `./balls`). With it come warnings for the user.
+    /// [`ply::read`], `.gltf` and `.glb` with the feature `gltf`: [`gltf::read`]; all of them as `.gz` and `.zst` too; a file called like a
+    /// built-in is `./balls`). With it come warnings for the user.
     ///
     /// # Errors
     /// [`Error::Usage`] for an impossible size of a built-in or a file of unknown kind; [`Error::Io`] and [`Error::Data`] for a
@@ -60,8 +63,12 @@ impl Model {
         match unpacked.rsplit_once('.').map(|(_, kind)| kind) {
             Some("obj") => obj::read(path, progress),
             Some("ply") => ply::read(path, progress),
+            #[cfg(feature = "gltf")]
+            Some("gltf" | "glb") => gltf::read(path, progress),
+            #[cfg(not(feature = "gltf"))]
+            Some("gltf" | "glb") => Err(Error::Usage(format!("{spec}: glTF needs the feature gltf of this crate"))),
             _ => Err(Error::Usage(format!(
-                "{spec}: not a scene: give a file that ends in .obj or .ply (or .obj.gz, .obj.zst ...), or one of the built-in scenes {} \
+                "{spec}: not a scene: give a file that ends in .obj, .ply, .gltf or .glb (or .obj.gz, .obj.zst ...), or one of the built-in scenes {} \
                  (with a size after a colon, if you like: balls:3)",
                 Builtin::ALL.map(Builtin::name).join(", ")
             ))),
@@ -145,7 +152,7 @@ mod tests {
         let (scene, warnings) = Model::open("balls:0", &Silent).expect("a built-in");
         assert_eq!((scene.mesh.triangles.len(), warnings.len()), (194, 0));
         for (spec, reason) in [
-            ("scene.blend", "ends in .obj or .ply"),
+            ("scene.blend", "ends in .obj, .ply, .gltf or .glb"),
             ("bals", "balls, rings, tree, hairball"),
             ("", "not a scene"),
             ("balls:x", "whole number from 0 to 6"),

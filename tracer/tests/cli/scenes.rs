@@ -53,3 +53,72 @@ fn plys_that_are_not_sound() {
         }
     }
 }
+
+/// A lamp over a floor, and a camera that looks at the floor. Both are the square with corners (0, 0, 0) and (1, 1, 0).
+const LIT: &str = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"square.bin","byteLength":54}],
+"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":6}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}],
+"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.1,0.1,1],"metallicFactor":0}},{"emissiveFactor":[1,1,1],
+"extensions":{"KHR_materials_emissive_strength":{"emissiveStrength":5}}}],
+"meshes":[{"name":"floor","primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]},
+{"name":"lamp","primitives":[{"attributes":{"POSITION":0},"indices":1,"material":1}]}],
+"cameras":[{"type":"perspective","perspective":{"yfov":0.6,"znear":0.1}}],
+"nodes":[{"mesh":0},{"mesh":1,"translation":[0,0,1],"scale":[0.3,0.3,1]},{"camera":0,"translation":[0.6,0.6,2]}],
+"scenes":[{"nodes":[0,1,2]}],"scene":0}"#;
+
+fn lit() -> Folder {
+    let folder = Folder::with("lit.gltf", LIT);
+    let floats = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0_f32];
+    folder.write(
+        "square.bin",
+        floats.into_iter().flat_map(f32::to_le_bytes).chain([0, 1, 2, 0, 2, 3]).collect::<Vec<u8>>(),
+    );
+    folder
+}
+
+/// A scene as `.gltf`, with its camera and lamps, and the same as `.glb`.
+#[test]
+fn gltf_with_a_lamp_and_a_camera() {
+    let folder = lit();
+    let json = LIT.replace("\"uri\":\"square.bin\",", "");
+    let json = format!("{json:0$}", json.len().next_multiple_of(4));
+    let bin = [folder.read("square.bin"), vec![0; 2]].concat();
+    let chunk = |kind: &[u8], bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes()[..], kind, bytes].concat();
+    let chunks = [chunk(b"JSON", json.as_bytes()), chunk(b"BIN\0", &bin)].concat();
+    folder.write("lit.glb", [&b"glTF\x02\0\0\0"[..], &(chunks.len() as u32 + 12).to_le_bytes(), &chunks].concat());
+
+    let render =
+        |file: &str| folder.json(&format!("render {file} --size 24x24 --json --integrator path --samples 8 -o x.png"));
+    let (text, binary) = (render("lit.gltf"), render("lit.glb"));
+    assert_eq!(text["image_hash"], binary["image_hash"]);
+    assert!(text["camera"].as_str().is_some_and(|c| c.starts_with("0.6,0.6,2/0.6,0.6,-")), "{text}");
+    let (.., pixels) = crate::pictures::png(&folder.read("x.png"));
+    let [r, g, b] = pixels.as_chunks::<3>().0[12 * 24 + 12];
+    assert!(r > 3 * g / 2 && g == b && g > 0, "the floor is red: {r} {g} {b}");
+    assert!(pixels.as_chunks::<3>().0.contains(&[255; 3]), "the lamp is white");
+    assert_eq!(folder.json("info lit.glb --json")["triangles"], 4);
+}
+
+#[test]
+fn gltfs_that_are_not_sound() {
+    let folder = lit();
+    for (from, to, words) in [
+        ("\"mesh\":1", "\"mesh\":2", ["bad.gltf", "nodes[1].mesh"]),
+        ("square.bin", "none.bin", ["cannot open none.bin", "No such file"]),
+        ("\"count\":6", "\"count\":9", ["mesh 0 \"floor\", primitive 0", "buffer view 1"]),
+        ("\"asset\":", "\"asset\"", ["bad.gltf:1", "expected `:`"]),
+    ] {
+        folder.write("bad.gltf", LIT.replacen(from, to, 1));
+        folder.fails("render bad.gltf -o x.png", 1, &words);
+    }
+    folder.write("bad.glb", "glTF\x02\0\0\0\0\0\0\0");
+    folder.fails("info bad.glb", 1, &["bad.glb", "12 bytes, its header says 0"]);
+    folder.write(
+        "warns.gltf",
+        LIT.replacen("\"scene\":0", "\"scene\":0,\"extensionsUsed\":[\"KHR_materials_sheen\"]", 1),
+    );
+    let output = folder.command("info warns.gltf").output().expect("started");
+    let (_, code, err) = crate::parts(&output);
+    assert!(code == Some(0) && err.contains("warns.gltf: the extension KHR_materials_sheen is not supported"), "{err}");
+}
