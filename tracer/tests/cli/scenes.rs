@@ -95,7 +95,7 @@ fn gltf_with_a_lamp_and_a_camera() {
     assert!(text["camera"].as_str().is_some_and(|c| c.starts_with("0.6,0.6,2/0.6,0.6,-")), "{text}");
     let (.., pixels) = crate::pictures::png(&folder.read("x.png"));
     let [r, g, b] = pixels.as_chunks::<3>().0[12 * 24 + 12];
-    assert!(r > 3 * g / 2 && g == b && g > 0, "the floor is red: {r} {g} {b}");
+    assert!(r > g && r > b, "the floor is red, under a blue sky: {r} {g} {b}");
     assert!(pixels.as_chunks::<3>().0.contains(&[255; 3]), "the lamp is white");
     assert_eq!(folder.json("info lit.glb --json")["triangles"], 4);
 }
