@@ -10,6 +10,7 @@ mod mesh;
 pub mod obj;
 pub mod ply;
 pub mod procedural;
+mod texture;
 mod vec3;
 mod view;
 
@@ -18,10 +19,13 @@ pub use light::Light;
 pub use material::{Material, Reflection};
 pub use mesh::Mesh;
 pub use procedural::{Builtin, builtin};
+pub(crate) use texture::LINEAR;
+pub use texture::Texture;
 
 use crate::Error;
 use crate::progress::Progress;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A mesh with all that is needed for a picture of it.
 #[derive(Debug, Clone)]
@@ -76,7 +80,7 @@ impl Model {
     }
 
     /// A mesh from a file: all of it light grey, without lights and camera.
-    fn of_mesh(path: &Path, mesh: Mesh) -> Self {
+    pub(crate) fn of_mesh(path: &Path, mesh: Mesh) -> Self {
         let name = stem(path).unwrap_or_default();
         // Many exporters write an ambient coefficient of 1 for everything: at full light it would wash the picture out.
         let ambient = 0.1;
@@ -96,12 +100,19 @@ impl Model {
         }
     }
 
-    /// Checks the mesh ([`Mesh::validate`]) and that the materials it names are there.
+    /// Checks the mesh ([`Mesh::validate`]), that the materials it names are there, and that their textures are not too large together.
     ///
     /// # Errors
     /// [`Error::Geometry`] with the number of the first vertex or triangle at fault and what to do.
     pub fn validate(&self) -> Result<(), Error> {
         self.mesh.validate()?;
+        let texels: usize = self.textures().iter().map(|t| t.texels().len()).sum();
+        if texels > Texture::MAX_TEXELS {
+            let most = Texture::MAX_TEXELS;
+            return Err(Error::Geometry(format!(
+                "the textures have {texels} pixels, {most} is the most: make them smaller"
+            )));
+        }
         let n = self.materials.len();
         let all_first = if self.mesh.materials.is_empty() { &[0][..] } else { &self.mesh.materials };
         match all_first.iter().position(|&m| m as usize >= n) {
@@ -111,6 +122,17 @@ impl Model {
                 all_first[i]
             ))),
         }
+    }
+
+    /// All textures of its materials, each once.
+    pub(crate) fn textures(&self) -> Vec<&Arc<Texture>> {
+        let mut textures: Vec<&Arc<Texture>> = Vec::new();
+        for texture in self.materials.iter().filter_map(|m| m.texture.as_ref()) {
+            if !textures.iter().any(|t| Arc::ptr_eq(t, texture)) {
+                textures.push(texture);
+            }
+        }
+        textures
     }
 
     /// The scene's own view, else one that shows all of it: [`Camera::of_mesh`].

@@ -124,6 +124,9 @@ impl<'a> Graph<'a> {
         if mesh.normals.is_empty() {
             mesh.normal_indices.clear();
         }
+        if mesh.uvs.is_empty() {
+            mesh.uv_indices.clear();
+        }
         Ok(mesh)
     }
 

@@ -5,14 +5,15 @@
 //! - rough surfaces (0.7 or more) that are no metals: [`Reflection::Lambertian`];
 //! - all else: [`Reflection::Glossy`], whose coat reflects as the index of refraction says, or as the metal's colour.
 
+use super::images::{self, Images};
 use super::{Notes, named};
-use crate::model::{Material, Reflection};
+use crate::model::{LINEAR, Material, Reflection};
 use gltf::material::AlphaMode;
-use gltf::{Document, material};
+use gltf::{Document, material, texture};
 
 /// All materials of a document, and the default one behind them.
-pub(super) fn read(document: &Document, notes: &mut Notes<'_>) -> Vec<Material> {
-    let mut materials: Vec<Material> = document.materials().map(|m| one(&m, notes)).collect();
+pub(super) fn read(document: &Document, mut images: Images<'_>, notes: &mut Notes<'_>) -> Vec<Material> {
+    let mut materials: Vec<Material> = document.materials().map(|m| one(&m, &mut images, notes)).collect();
     materials.push(Material { name: "default".into(), ..surface(Surface::default()) });
     materials
 }
@@ -36,7 +37,13 @@ impl Default for Surface {
     }
 }
 
-fn one(m: &material::Material<'_>, notes: &mut Notes<'_>) -> Material {
+/// The texture of a material's base colour.
+pub(super) fn base_texture<'a>(m: &material::Material<'a>) -> Option<texture::Info<'a>> {
+    let old = m.pbr_specular_glossiness();
+    old.map_or_else(|| m.pbr_metallic_roughness().base_color_texture(), |old| old.diffuse_texture())
+}
+
+fn one(m: &material::Material<'_>, images: &mut Images<'_>, notes: &mut Notes<'_>) -> Material {
     let what = named("material", m.index().unwrap_or_default(), m.name());
     let pbr = m.pbr_metallic_roughness();
     let [r, g, b, _] = pbr.base_color_factor();
@@ -52,6 +59,13 @@ fn one(m: &material::Material<'_>, notes: &mut Notes<'_>) -> Material {
         transmission: m.transmission().map_or(0.0, |t| t.transmission_factor()),
         ior,
     };
+    if let Some(info) = pbr.metallic_roughness_texture() {
+        let instead = "its factors are used";
+        if let Some(image) = images.read(&info.texture(), &what, instead, notes) {
+            let [_, roughness, metallic] = image.mean(|byte| f32::from(byte) / 255.0);
+            given = Surface { metallic: given.metallic * metallic, roughness: given.roughness * roughness, ..given };
+        }
+    }
     if let Some(old) = m.pbr_specular_glossiness() {
         let [r, g, b, _] = old.diffuse_factor();
         given = Surface {
@@ -69,10 +83,28 @@ fn one(m: &material::Material<'_>, notes: &mut Notes<'_>) -> Material {
     if m.alpha_mode() != AlphaMode::Opaque && given.transmission < 0.5 {
         notes.warn(&format!("{what}: transparency (alphaMode) is not supported, it is opaque here"));
     }
-    let strength = m.emissive_strength().unwrap_or(1.0);
-    let emission = m.emissive_factor().map(|c| if (c * strength).is_finite() { (c * strength).max(0.0) } else { 0.0 });
     let name = m.name().map_or_else(|| format!("material_{}", m.index().unwrap_or_default()), str::to_owned);
-    Material { name, emission, ..surface(given) }
+    let mut material = Material { name, emission: emission(m, &what, images, notes), ..surface(given) };
+    if let Some(info) = base_texture(m) {
+        images::look(&info.texture(), &what, notes);
+        material.texture = images.read(&info.texture(), &what, "its colour is used", notes);
+        material.texture_on_specular = given.metallic >= 0.5;
+    }
+    material
+}
+
+/// Light of its own; none where a texture says from where, and cannot be read.
+fn emission(m: &material::Material<'_>, what: &str, images: &mut Images<'_>, notes: &mut Notes<'_>) -> [f32; 3] {
+    let (strength, mut factor) = (m.emissive_strength().unwrap_or(1.0), m.emissive_factor());
+    if factor == [0.0; 3] {
+        return factor;
+    }
+    if let Some(info) = m.emissive_texture() {
+        let image = images.read(&info.texture(), what, "it sends out no light", notes);
+        let mean = image.map_or([0.0; 3], |image| image.mean(|byte| LINEAR[usize::from(byte)]));
+        (0..3).for_each(|k| factor[k] *= mean[k]);
+    }
+    factor.map(|c| if (c * strength).is_finite() { (c * strength).max(0.0) } else { 0.0 })
 }
 
 fn surface(given: Surface) -> Material {

@@ -5,7 +5,8 @@
 //! triangles come node by node, each before its children, in the order of the file; a mesh that several nodes show is there several times.
 //! Vertices are numbered in the order in which triangles first use them.
 //!
-//! - Materials become [`Material`](super::Material)s: see the module `materials` for which becomes what.
+//! - Materials become [`Material`](super::Material)s: see the module `materials` for which becomes what. Textures of their base colour are
+//!   read (PNG and JPEG, inside or beside the file); of those of metalness, roughness and emission the mean is taken.
 //! - The first perspective camera of the scene is the model's.
 //! - Lights (`KHR_lights_punctual`) become [`Light`](super::Light)s, which shine equally bright on what is far and what is near: one that falls off shines
 //!   everywhere as it does in the middle of the scene.
@@ -16,6 +17,7 @@ mod accessor;
 mod buffers;
 mod document;
 mod graph;
+mod images;
 mod lights;
 mod materials;
 mod primitive;
@@ -25,7 +27,8 @@ use crate::Error;
 use crate::progress::Progress;
 use buffers::Buffers;
 use graph::Graph;
-use std::collections::HashSet;
+use images::Images;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// Reads a `.gltf` or `.glb` file and the buffers it names. With the scene come warnings for the user, about what is passed over.
@@ -41,7 +44,12 @@ pub fn read(path: &Path, progress: &dyn Progress) -> Result<(Model, Vec<String>)
     let graph = Graph::walk(&document, &mut notes)?;
     let mut mesh = graph.mesh(&document, &buffers, &mut notes, progress)?;
     mesh.unit_normals();
-    let materials = materials::read(&document, &mut notes);
+    let images = Images { document: &document, buffers: &buffers, path, progress, known: HashMap::new(), texels: 0 };
+    let materials = materials::read(&document, images, &mut notes);
+    if materials.iter().all(|m| m.texture.is_none()) {
+        (mesh.uvs, mesh.uv_indices) = (Vec::new(), Vec::new());
+    }
+    progress.check()?;
     let lights = lights::lights(&graph, &mesh.bounds(), &mut notes);
     let camera = lights::camera(&graph, &mut notes);
     Ok((Model { materials, lights, camera, ..Model::of_mesh(path, mesh) }, notes.warnings))

@@ -4,6 +4,7 @@ use super::Notes;
 use super::accessor::Values;
 use super::buffers::Buffers;
 use super::graph::Affine;
+use super::materials::base_texture;
 use crate::model::Mesh;
 use gltf::accessor::Dimensions;
 use gltf::mesh::{Mode, Primitive, Semantic};
@@ -28,6 +29,8 @@ pub(super) struct Shape<'a> {
     mode: Mode,
     positions: Values<'a>,
     normals: Option<Values<'a>>,
+    /// With the map of texture coordinates.
+    uvs: Option<(Values<'a>, UvMap)>,
     indices: Option<Values<'a>>,
     /// None for the default one.
     material: Option<usize>,
@@ -52,13 +55,20 @@ impl<'a> Shape<'a> {
         if normals.as_ref().is_some_and(|n| n.len() != positions.len()) {
             return Err(fail(format!("it has other numbers of positions ({}) and normals", positions.len())));
         }
+        let uvs = uvs(primitive, buffers).map_err(fail)?;
+        if uvs.as_ref().is_some_and(|(uvs, _)| uvs.len() != positions.len()) {
+            return Err(fail(format!(
+                "it has other numbers of positions ({}) and texture coordinates",
+                positions.len()
+            )));
+        }
         let indices =
             primitive.indices().map(|a| Values::new(buffers, &a, Dimensions::Scalar)).transpose().map_err(fail)?;
         if indices.as_ref().is_some_and(|i| !i.are_indices()) {
             return Err(fail("its indices are no whole numbers without sign".into()));
         }
         let material = primitive.material().index();
-        let shape = Self { mode, positions, normals, indices, material, what: String::new() };
+        let shape = Self { mode, positions, normals, uvs, indices, material, what: String::new() };
         let corners = shape.corners();
         if mode == Mode::Triangles && !corners.is_multiple_of(3) {
             return Err(fail(format!("its {corners} corners are no multiple of 3")));
@@ -105,7 +115,7 @@ impl<'a> Shape<'a> {
         let mut numbers: HashMap<usize, u32> = HashMap::new();
         for i in 0..self.triangles() {
             let mut triangle = [0; 3];
-            let mut normals = Mesh::FLAT;
+            let (mut normals, mut uvs) = (Mesh::FLAT, Mesh::FLAT);
             for (k, corner) in self.triangle(i).into_iter().enumerate() {
                 let vertex = self.vertex(corner)?;
                 let number = match numbers.get(&vertex) {
@@ -120,14 +130,19 @@ impl<'a> Shape<'a> {
                 if self.normals.is_some() {
                     normals[k] = number - (mesh.positions.len() - mesh.normals.len()) as u32;
                 }
+                if self.uvs.is_some() {
+                    uvs[k] = number - (mesh.positions.len() - mesh.uvs.len()) as u32;
+                }
             }
             // What is mirrored shows its front all the same.
             if mirrors {
                 triangle.swap(1, 2);
                 normals.swap(1, 2);
+                uvs.swap(1, 2);
             }
             mesh.triangles.push(triangle);
             mesh.normal_indices.push(normals);
+            mesh.uv_indices.push(uvs);
             mesh.materials.push(self.material.unwrap_or(default) as u32);
         }
         Ok(())
@@ -150,6 +165,13 @@ impl<'a> Shape<'a> {
             let normal = of_normals.vector(normals.get::<3>(vertex).map(f64::from));
             mesh.normals.push(direction(normal));
         }
+        if let Some((uvs, map)) = &self.uvs {
+            let [u, v] = map.apply(uvs.get::<2>(vertex));
+            if !(u.is_finite() && v.is_finite()) {
+                return Err(format!("{}: texture coordinate {vertex} is ({u}, {v}), both must be finite", self.what));
+            }
+            mesh.uvs.push([u, v]);
+        }
         Ok(number)
     }
 }
@@ -159,4 +181,39 @@ fn direction(v: [f64; 3]) -> [f32; 3] {
     let largest = v.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let unit = v.map(|c| (c / largest) as f32);
     if unit.iter().all(|c| c.is_finite()) { unit } else { [0.0; 3] }
+}
+
+/// The texture coordinates that the material's texture asks for.
+fn uvs<'a>(primitive: &Primitive<'_>, buffers: &'a Buffers) -> Result<Option<(Values<'a>, UvMap)>, String> {
+    let Some(info) = base_texture(&primitive.material()) else {
+        return Ok(None);
+    };
+    let transform = info.texture_transform();
+    let set = transform.as_ref().and_then(|t| t.tex_coord()).unwrap_or(info.tex_coord());
+    let Some(accessor) = primitive.get(&Semantic::TexCoords(set)) else {
+        return Ok(None);
+    };
+    let values = Values::new(buffers, &accessor, Dimensions::Vec2)?;
+    Ok(Some((values, transform.map_or(UvMap::IDENTITY, |t| UvMap::new(t.offset(), t.rotation(), t.scale())))))
+}
+
+/// An affine map of texture coordinates: two columns, and where the origin goes.
+struct UvMap([[f64; 2]; 3]);
+
+impl UvMap {
+    const IDENTITY: Self = Self([[1.0, 0.0], [0.0, 1.0], [0.0; 2]]);
+
+    /// Scale, then rotation, then offset (KHR_texture_transform).
+    fn new(offset: [f32; 2], rotation: f32, [s, t]: [f32; 2]) -> Self {
+        let (sin, cos) = libm::sincos(rotation.into());
+        let [s, t] = [f64::from(s), f64::from(t)];
+        Self([[s * cos, -s * sin], [t * sin, t * cos], offset.map(f64::from)])
+    }
+
+    /// From glTF, whose images begin at the top, to the mesh's coordinates, where they end there.
+    fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
+        let [a, b, origin] = self.0;
+        let [u, v] = [f64::from(u), f64::from(v)];
+        [(a[0] * u + b[0] * v + origin[0]) as f32, (1.0 - (a[1] * u + b[1] * v + origin[1])) as f32]
+    }
 }

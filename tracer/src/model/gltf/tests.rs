@@ -329,3 +329,65 @@ fn cut_and_damaged() {
         }
     }
 }
+
+/// Images inside of a buffer, in the JSON and beside the file; coordinates by the material's set and map.
+#[cfg(feature = "textures")]
+#[test]
+fn textures() {
+    let png = |color: [u8; 3]| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        image::RgbImage::from_pixel(2, 3, image::Rgb(color))
+            .write_to(&mut bytes, image::ImageFormat::Png)
+            .expect("encoded");
+        bytes.into_inner()
+    };
+    let image = png([0, 128, 255]);
+    let json = r#""extensionsUsed":["KHR_texture_transform"],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":3},"indices":2,"material":0},
+        {"attributes":{"POSITION":0,"TEXCOORD_1":3},"indices":2,"material":1},{"attributes":{"POSITION":0},"indices":2,"material":2}]}],
+        "materials":[{"pbrMetallicRoughness":{"metallicFactor":0.2,"baseColorTexture":{"index":0}}},
+        {"emissiveFactor":[1,1,1],"emissiveTexture":{"index":0},"pbrMetallicRoughness":{"baseColorTexture":{"index":0,
+        "texCoord":1,"extensions":{"KHR_texture_transform":{"offset":[0.5,0],"rotation":1.5707963,"scale":[2,3]}}}}},
+        {"pbrMetallicRoughness":{"metallicRoughnessTexture":{"index":0},"baseColorTexture":{"index":1}}}],
+        "textures":[{"source":0,"sampler":0},{"source":1}],"samplers":[{"wrapS":33071}],
+        "images":[{"bufferView":3,"mimeType":"image/png","name":"sky"},{"uri":"none.png"}],"nodes":[{"mesh":0}]"#;
+    // Vec2 of the positions' bytes: (0, 0), (0, 1), (0, 0), (1, 1).
+    let accessors = ACCESSORS
+        .replace("\"byteLength\":102}", &format!("\"byteLength\":{}}}", 104 + image.len()))
+        .replace(
+            "\"byteLength\":6}",
+            &format!("\"byteLength\":6}},{{\"buffer\":0,\"byteOffset\":104,\"byteLength\":{}}}", image.len()),
+        )
+        .replace("\"SCALAR\"}", "\"SCALAR\"},{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"}");
+    let file = glb(&format!("{{{accessors},{json}}}"), &[square(), vec![0; 2], image].concat());
+    let (model, warnings) = read_as("a.glb", &file).expect("sound");
+
+    let [sky, lamp, metal, _] = &model.materials[..] else { panic!("{:?}", model.materials) };
+    let texture = sky.texture.as_ref().expect("read");
+    assert_eq!((texture.name(), texture.size(), sky.texture_on_specular), ("sky", (2, 3), false));
+    assert!(lamp.texture_on_specular && std::sync::Arc::ptr_eq(texture, lamp.texture.as_ref().expect("read")));
+    assert_eq!(lamp.emission, [0.0, crate::model::LINEAR[128], 1.0], "the mean of the image");
+    // Blue is metalness, green roughness.
+    assert!(
+        metal.texture.is_none() && metal.reflection == Reflection::Glossy && metal.diffuse == [0.0; 3],
+        "{metal:?}"
+    );
+
+    let uv = |i: usize| model.mesh.uv_indices[i].map(|n| model.mesh.uvs[n as usize]);
+    assert_eq!(uv(0), [[0.0, 1.0], [0.0, 0.0], [0.0, 1.0]], "images begin at the top there, and end there here");
+    assert_eq!(uv(1), [[0.0, 1.0], [0.0, 1.0], [1.0, 0.0]]);
+    for (found, expected) in uv(3).iter().zip([[0.5, 1.0], [0.5, 1.0], [3.5, 3.0]]) {
+        assert!(
+            (found[0] - expected[0]).abs() < 1e-5 && (found[1] - expected[1]).abs() < 1e-5,
+            "{found:?}, not {expected:?}"
+        );
+    }
+    assert_eq!(model.mesh.uv_indices[4..], [Mesh::FLAT; 2]);
+    let words = [
+        "material 0: textures are repeated",
+        "material 1: textures are repeated",
+        "material 2: its texture is not read (cannot open",
+    ];
+    assert_eq!(warnings.len(), 3, "{warnings:#?}");
+    assert!(warnings.iter().zip(words).all(|(warning, words)| warning.contains(words)), "{warnings:#?}");
+}

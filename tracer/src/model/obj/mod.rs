@@ -1,14 +1,15 @@
 //! Wavefront OBJ with its MTL: what is read of it, and how it is written.
 //!
-//! Read are `v`, `vn`, `f`, `usemtl` and `mtllib`, and of the library `newmtl`, `Ka`, `Kd`, `Ks` and `Ns`. Polygons are cut into fans
+//! Read are `v`, `vn`, `vt`, `f`, `usemtl` and `mtllib`, and of the library `newmtl`, `Ka`, `Kd`, `Ks`, `Ns`, `Ke`, `Ni`, `Tf`, `illum` and `map_Kd`. Polygons are cut into fans
 //! (0 1 2, 0 2 3, 0 3 4 ...). The triangle with id `i` is the `i`-th of the file, whatever objects, groups and materials
-//! it belongs to, degenerate ones included; points, lines, curves and texture coordinates are passed over. A face may
+//! it belongs to, degenerate ones included; points, lines and curves are passed over, and texture coordinates where nothing has a texture. A face may
 //! only name vertices above it. Vertices are numbered in the order in which faces first use them.
 //!
 //! `tobj` parses. Before it does, the module `tidy` goes over the text for what `tobj` does not do: errors with a line number,
 //! triangles without normals among others, comments behind numbers, continued lines, `l` that is no polygon.
 
 mod mtl;
+mod textures;
 mod tidy;
 mod write;
 
@@ -34,11 +35,21 @@ use tidy::Outline;
 pub fn read(path: &Path, progress: &dyn Progress) -> Result<(Model, Vec<String>), Error> {
     let mut text = decompress::read(path, progress)?;
     let outline = tidy::tidy(&mut text, path, progress)?;
+    let mut warnings = Vec::new();
+    let library = mtl::read(path, &outline, &mut warnings)?;
+    let textured = library.iter().flatten().any(|m| m.texture.is_some());
+    match outline.bad_uv {
+        Some(line) if textured => {
+            let message = "a texture coordinate has two finite numbers: correct it, or remove the textures".into();
+            return Err(Error::Data { path: path.to_owned(), line: Some(line), message });
+        }
+        _ if textured => {}
+        _ => tidy::without_uvs(&mut text),
+    }
     let mut mesh = parse(&text, path, progress)?;
     drop(text);
     finish_normals(&mut mesh, &outline);
-    let mut warnings = Vec::new();
-    let library = mtl::read(path, &outline, &mut warnings)?;
+    finish_uvs(&mut mesh, &outline);
     let materials = assign_materials(&mut mesh, &outline, library, path, &mut warnings);
     Ok((Model { materials, ..Model::of_mesh(path, mesh) }, warnings))
 }
@@ -60,6 +71,8 @@ fn parse(text: &[u8], path: &Path, progress: &dyn Progress) -> Result<Mesh, Erro
         triangles: m.indices.as_chunks().0.to_vec(),
         normals: m.normals.as_chunks().0.to_vec(),
         normal_indices: m.normal_indices.as_chunks().0.to_vec(),
+        uvs: m.texcoords.as_chunks().0.to_vec(),
+        uv_indices: m.texcoord_indices.as_chunks().0.to_vec(),
         materials: Vec::new(),
     })
 }
@@ -73,6 +86,19 @@ fn finish_normals(mesh: &mut Mesh, outline: &Outline) {
         mesh.normal_indices[run.clone()].fill(Mesh::FLAT);
     }
     mesh.unit_normals();
+}
+
+/// No texture coordinates where the file gives none.
+fn finish_uvs(mesh: &mut Mesh, outline: &Outline) {
+    if mesh.uv_indices.is_empty() {
+        return;
+    }
+    for run in &outline.bare {
+        mesh.uv_indices[run.clone()].fill(Mesh::FLAT);
+    }
+    if mesh.uv_indices.iter().all(|t| *t == Mesh::FLAT) {
+        (mesh.uvs, mesh.uv_indices) = (Vec::new(), Vec::new());
+    }
 }
 
 /// Gives each triangle its material; those that no library has are made up.
