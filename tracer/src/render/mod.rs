@@ -9,6 +9,7 @@ mod material;
 mod sampler;
 mod scenery;
 mod shade;
+mod textures;
 mod tone;
 
 pub use eye::EyeRays;

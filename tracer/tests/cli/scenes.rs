@@ -1,7 +1,7 @@
 //! Scenes from files, by all commands that take one.
 
-use crate::Folder;
 use crate::batches::rays_npy;
+use crate::{Folder, levels};
 
 /// The squares of [`crate::SQUARES`].
 const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n\
@@ -121,4 +121,36 @@ fn gltfs_that_are_not_sound() {
     let output = folder.command("info warns.gltf").output().expect("started");
     let (_, code, err) = crate::parts(&output);
     assert!(code == Some(0) && err.contains("warns.gltf: the extension KHR_materials_sheen is not supported"), "{err}");
+}
+
+/// The corners of an image are where they belong, on every level; without the image the colour is used.
+#[test]
+fn textures_of_an_mtl() {
+    let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3 4/4\n";
+    let folder = Folder::with("a.obj", obj);
+    folder.write("a.mtl", "newmtl a\nKd 1 1 1\nmap_Kd -clamp off a b.png\n");
+    let view = "--camera 0.5,0.5,2/0.5,0.5,0//40 --size 64x64 -o x.png";
+    let output = folder.command(&format!("render a.obj {view}")).output().expect("started");
+    let (_, code, err) = crate::parts(&output);
+    assert!(code == Some(0) && err.contains("a.mtl:3: the texture a b.png cannot be read"), "{err}");
+
+    let image = image::RgbImage::from_fn(2, 2, |x, y| {
+        image::Rgb([[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0]][(x + 2 * y) as usize])
+    });
+    image.save(folder.path().join("a b.png")).expect("written");
+    for integrator in ["eye", "whitted"] {
+        let command = format!("render a.obj {view} --json --integrator {integrator}");
+        let hash = folder.json(&command)["image_hash"].clone();
+        for level in levels() {
+            assert_eq!(folder.json(&format!("{command} --level {level}"))["image_hash"], hash, "{integrator}, {level}");
+        }
+        let (.., pixels) = crate::pictures::png(&folder.read("x.png"));
+        let quarter = |x: usize, y: usize| pixels.as_chunks::<3>().0[y * 64 + x].map(|c| c > 128);
+        let found = [quarter(22, 22), quarter(41, 22), quarter(22, 41), quarter(41, 41)];
+        assert_eq!(
+            found,
+            [[true, false, false], [false, true, false], [false, false, true], [true, true, false]],
+            "{integrator}"
+        );
+    }
 }
