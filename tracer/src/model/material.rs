@@ -1,5 +1,8 @@
 //! Surfaces.
 
+use super::Texture;
+use std::sync::Arc;
+
 /// How a surface reflects light in pictures with secondary rays. ([`render`](crate::render::render), the picture of three passes, knows
 /// Phong's model alone.)
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -37,6 +40,10 @@ pub struct Material {
     pub transmission: [f32; 3],
     /// illum: which of these take part in secondary rays, and how.
     pub reflection: Reflection,
+    /// map_Kd: multiplies [`Material::diffuse`] where triangles have texture coordinates ([`Mesh::uv_indices`](super::Mesh::uv_indices)).
+    pub texture: Option<Arc<Texture>>,
+    /// Whether it multiplies [`Material::specular`] too, as on metals.
+    pub texture_on_specular: bool,
 }
 
 impl Material {
@@ -66,6 +73,8 @@ impl Material {
             ior: 1.5,
             transmission: [1.0; 3],
             reflection: Reflection::Lambertian,
+            texture: None,
+            texture_on_specular: false,
         }
     }
 }

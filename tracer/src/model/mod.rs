@@ -2,12 +2,15 @@
 
 mod camera;
 mod decompress;
+#[cfg(feature = "gltf")]
+pub mod gltf;
 mod light;
 mod material;
 mod mesh;
 pub mod obj;
 pub mod ply;
 pub mod procedural;
+mod texture;
 mod vec3;
 mod view;
 
@@ -16,10 +19,13 @@ pub use light::Light;
 pub use material::{Material, Reflection};
 pub use mesh::Mesh;
 pub use procedural::{Builtin, builtin};
+pub(crate) use texture::LINEAR;
+pub use texture::Texture;
 
 use crate::Error;
 use crate::progress::Progress;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A mesh with all that is needed for a picture of it.
 #[derive(Debug, Clone)]
@@ -44,8 +50,9 @@ impl Model {
     /// The background of the SPD's scenes, and of those that have none of their own.
     pub const SKY: [f32; 3] = [0.078, 0.361, 0.753];
 
-    /// The scene that a user names: a built-in one ([`builtin`]: `balls`, `rings:3` ...) or a file (`.obj`, `.obj.gz`,
-    /// `.obj.zst`: [`obj::read`]; a file called like a built-in is `./balls`). With it come warnings for the user.
+    /// The scene that a user names: a built-in one ([`builtin`]: `balls`, `rings:3` ...) or a file (`.obj`: [`obj::read`], `.ply`:
+    /// [`ply::read`], `.gltf` and `.glb` with the feature `gltf`: [`gltf::read`]; all of them as `.gz` and `.zst` too; a file called like a
+    /// built-in is `./balls`). With it come warnings for the user.
     ///
     /// # Errors
     /// [`Error::Usage`] for an impossible size of a built-in or a file of unknown kind; [`Error::Io`] and [`Error::Data`] for a
@@ -54,15 +61,31 @@ impl Model {
         if let Some(scene) = builtin(spec) {
             return Ok((scene?, Vec::new()));
         }
+        let path = Path::new(spec);
         let name = spec.to_ascii_lowercase();
-        if [".obj", ".obj.gz", ".obj.zst"].iter().any(|end| name.ends_with(end)) {
-            return obj::read(Path::new(spec), progress);
+        let unpacked = [".gz", ".zst"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(&name);
+        match unpacked.rsplit_once('.').map(|(_, kind)| kind) {
+            Some("obj") => obj::read(path, progress),
+            Some("ply") => ply::read(path, progress),
+            #[cfg(feature = "gltf")]
+            Some("gltf" | "glb") => gltf::read(path, progress),
+            #[cfg(not(feature = "gltf"))]
+            Some("gltf" | "glb") => Err(Error::Usage(format!("{spec}: glTF needs the feature gltf of this crate"))),
+            _ => Err(Error::Usage(format!(
+                "{spec}: not a scene: give a file that ends in .obj, .ply, .gltf or .glb (or .obj.gz, .obj.zst ...), or one of the built-in scenes {} \
+                 (with a size after a colon, if you like: balls:3)",
+                Builtin::ALL.map(Builtin::name).join(", ")
+            ))),
         }
-        Err(Error::Usage(format!(
-            "{spec}: not a scene: give a file that ends in .obj, .obj.gz or .obj.zst, or one of the built-in scenes {} \
-             (with a size after a colon, if you like: balls:3)",
-            Builtin::ALL.map(Builtin::name).join(", ")
-        )))
+    }
+
+    /// A mesh from a file: all of it light grey, without lights and camera.
+    pub(crate) fn of_mesh(path: &Path, mesh: Mesh) -> Self {
+        let name = stem(path).unwrap_or_default();
+        // Many exporters write an ambient coefficient of 1 for everything: at full light it would wash the picture out.
+        let ambient = 0.1;
+        let materials = vec![Material::grey("default")];
+        Self { name, mesh, materials, lights: Vec::new(), camera: None, ambient, background: Self::SKY }
     }
 
     /// Writes the mesh as the name of the file says: `.obj` with its `.mtl` ([`obj::write`]) or `.ply` ([`ply::write`]).
@@ -77,12 +100,19 @@ impl Model {
         }
     }
 
-    /// Checks the mesh ([`Mesh::validate`]) and that the materials it names are there.
+    /// Checks the mesh ([`Mesh::validate`]), that the materials it names are there, and that their textures are not too large together.
     ///
     /// # Errors
     /// [`Error::Geometry`] with the number of the first vertex or triangle at fault and what to do.
     pub fn validate(&self) -> Result<(), Error> {
         self.mesh.validate()?;
+        let texels: usize = self.textures().iter().map(|t| t.texels().len()).sum();
+        if texels > Texture::MAX_TEXELS {
+            let most = Texture::MAX_TEXELS;
+            return Err(Error::Geometry(format!(
+                "the textures have {texels} pixels, {most} is the most: make them smaller"
+            )));
+        }
         let n = self.materials.len();
         let all_first = if self.mesh.materials.is_empty() { &[0][..] } else { &self.mesh.materials };
         match all_first.iter().position(|&m| m as usize >= n) {
@@ -92,6 +122,17 @@ impl Model {
                 all_first[i]
             ))),
         }
+    }
+
+    /// All textures of its materials, each once.
+    pub(crate) fn textures(&self) -> Vec<&Arc<Texture>> {
+        let mut textures: Vec<&Arc<Texture>> = Vec::new();
+        for texture in self.materials.iter().filter_map(|m| m.texture.as_ref()) {
+            if !textures.iter().any(|t| Arc::ptr_eq(t, texture)) {
+                textures.push(texture);
+            }
+        }
+        textures
     }
 
     /// The scene's own view, else one that shows all of it: [`Camera::of_mesh`].
@@ -114,6 +155,15 @@ impl Model {
     }
 }
 
+/// The file's name without its ending, `.gz` or `.zst` included.
+fn stem(path: &Path) -> Option<String> {
+    let inner = match path.extension()?.to_ascii_lowercase().to_str() {
+        Some("gz" | "zst") => Path::new(path.file_stem()?),
+        _ => path,
+    };
+    Some(inner.file_stem()?.to_string_lossy().into_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -124,15 +174,17 @@ mod tests {
         let (scene, warnings) = Model::open("balls:0", &Silent).expect("a built-in");
         assert_eq!((scene.mesh.triangles.len(), warnings.len()), (194, 0));
         for (spec, reason) in [
-            ("scene.blend", "ends in .obj, .obj.gz or .obj.zst"),
+            ("scene.blend", "ends in .obj, .ply, .gltf or .glb"),
             ("bals", "balls, rings, tree, hairball"),
             ("", "not a scene"),
             ("balls:x", "whole number from 0 to 6"),
             ("there/is/none.OBJ", "cannot open there/is/none.OBJ"),
+            ("none.ply.Gz", "cannot open none.ply.Gz"),
+            ("none.blend.gz", "not a scene"),
         ] {
             let e = Model::open(spec, &Silent).expect_err(spec);
             assert!(e.to_string().contains(reason), "{e}");
-            assert_eq!(matches!(e, Error::Usage(_)), !spec.ends_with("OBJ"));
+            assert_eq!(matches!(e, Error::Usage(_)), !e.to_string().starts_with("cannot open"));
         }
     }
 

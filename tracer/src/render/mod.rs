@@ -10,6 +10,7 @@ mod material;
 mod sampler;
 mod scenery;
 mod shade;
+mod textures;
 mod tone;
 
 pub use environment::{Environment, Up};

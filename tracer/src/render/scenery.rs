@@ -2,7 +2,9 @@
 
 use super::lights::{Lights, corner_and_edges};
 use super::{Environment, Surfaces};
+use crate::geometry::Vec3;
 use crate::model::{Camera, Light, Material, Model, Reflection};
+use simd::{Mask, Vector};
 
 /// A scene laid out for shading secondary rays: corners, normals and materials of its triangles to gather from, and its light sources.
 ///
@@ -74,13 +76,22 @@ impl Scenery {
         }
     }
 
-    /// Diffuse and specular colour of a material together, at most 1; white for glass.
-    pub(super) fn albedo(&self, material: u32) -> [f32; 3] {
+    /// Diffuse and specular colour of a material together under this tint, at most 1; white for glass.
+    pub(super) fn albedo(&self, material: u32, tint: Vec3<f32>) -> [f32; 3] {
         if self.models[material as usize] == number(Reflection::Dielectric) {
             return [1.0; 3];
         }
         let words = &self.materials[(material * Self::MATERIAL) as usize..];
-        [0, 1, 2].map(|k| (words[k] + words[3 + k]).min(1.0))
+        let specular = Vec3 { x: words[3], y: words[4], z: words[5] };
+        let specular = match self.surfaces.textures.is_empty() {
+            true => specular,
+            false => {
+                let (material, on) = (<f32 as Vector>::Index::splat(material), <f32 as Vector>::Mask::splat(true));
+                self.surfaces.textures.specular(specular, tint, material, on)
+            }
+        };
+        [words[0] * tint.x + specular.x, words[1] * tint.y + specular.y, words[2] * tint.z + specular.z]
+            .map(|c| c.min(1.0))
     }
 
     /// What rays see that hit nothing, in words that tell one environment from another.

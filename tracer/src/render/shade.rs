@@ -1,5 +1,6 @@
 //! Shading: pass three. Phong's model on whole packets, with gathered materials and normals.
 
+use super::textures::Textures;
 use crate::Error;
 use crate::geometry::{HitBatch, HitBlock, RayBatch, RayBlock, Vec3};
 use crate::lanes::{self, Lanes, Width};
@@ -18,6 +19,7 @@ pub struct Surfaces {
     pub(super) normals: Vec<f32>,
     /// [`Surfaces::MATERIAL`] words per material.
     materials: Vec<f32>,
+    pub(super) textures: Textures,
 }
 
 impl Surfaces {
@@ -43,7 +45,8 @@ impl Surfaces {
         let words = |m: &crate::model::Material| {
             [m.ambient, m.diffuse, m.specular].into_iter().flatten().chain([m.shininess]).collect::<Vec<f32>>()
         };
-        Self { triangles, normals, materials: scene.materials.iter().flat_map(words).collect() }
+        let materials = scene.materials.iter().flat_map(words).collect();
+        Self { triangles, normals, materials, textures: Textures::new(scene) }
     }
 }
 
@@ -199,9 +202,16 @@ fn phong<F: Float>(job: &Job<'_>, point: &Points<F>, block: usize, chunk: usize)
     let material: F::Index = word(&job.surfaces.triangles, point.primitive, 4, 3, point.hit);
     let materials = &job.surfaces.materials;
     let ambient = words3(materials, material, Surfaces::MATERIAL, 0, point.hit);
-    let diffuse = words3(materials, material, Surfaces::MATERIAL, 3, point.hit);
-    let specular = words3(materials, material, Surfaces::MATERIAL, 6, point.hit);
+    let mut diffuse = words3(materials, material, Surfaces::MATERIAL, 3, point.hit);
+    let mut specular = words3(materials, material, Surfaces::MATERIAL, 6, point.hit);
     let shininess = word(materials, material, Surfaces::MATERIAL, 9, point.hit);
+
+    let textures = &job.surfaces.textures;
+    if !textures.is_empty() {
+        let tint = textures.tint(material, point.primitive, [point.u, point.v], point.hit);
+        diffuse = diffuse * tint;
+        specular = textures.specular(specular, tint, material, point.hit);
+    }
 
     let mut rgb = ambient.scale(F::splat(job.lighting.ambient));
     for (number, light) in job.lighting.lights.iter().enumerate() {

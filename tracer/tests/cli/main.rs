@@ -7,6 +7,7 @@ mod environment;
 mod interrupt;
 mod pictures;
 mod reports;
+mod scenes;
 
 use std::fs;
 use std::path::Path;

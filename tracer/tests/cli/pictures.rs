@@ -4,7 +4,7 @@ use crate::{Folder, SQUARES, levels};
 use std::io::Cursor;
 
 /// Width, height and pixels.
-fn png(bytes: &[u8]) -> (u32, u32, Vec<u8>) {
+pub fn png(bytes: &[u8]) -> (u32, u32, Vec<u8>) {
     let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("a picture");
     let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
     let info = reader.next_frame(&mut pixels).expect("pixels");

@@ -37,7 +37,7 @@ struct Cli {
 
 const EXAMPLES: &str = "\
 Scenes:
-  a file     .obj (with the .mtl it names), .obj.gz, .obj.zst
+  a file     .obj (with the .mtl it names), .ply, .gltf, .glb; packed too: .obj.gz, .ply.zst ...
   built in   balls, rings, tree, hairball; with a size after a colon: balls:3
 
 Examples:

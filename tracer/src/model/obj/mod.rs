@@ -1,14 +1,15 @@
 //! Wavefront OBJ with its MTL: what is read of it, and how it is written.
 //!
-//! Read are `v`, `vn`, `f`, `usemtl` and `mtllib`, and of the library `newmtl`, `Ka`, `Kd`, `Ks` and `Ns`. Polygons are cut into fans
+//! Read are `v`, `vn`, `vt`, `f`, `usemtl` and `mtllib`, and of the library `newmtl`, `Ka`, `Kd`, `Ks`, `Ns`, `Ke`, `Ni`, `Tf`, `illum` and `map_Kd`. Polygons are cut into fans
 //! (0 1 2, 0 2 3, 0 3 4 ...). The triangle with id `i` is the `i`-th of the file, whatever objects, groups and materials
-//! it belongs to, degenerate ones included; points, lines, curves and texture coordinates are passed over. A face may
+//! it belongs to, degenerate ones included; points, lines and curves are passed over, and texture coordinates where nothing has a texture. A face may
 //! only name vertices above it. Vertices are numbered in the order in which faces first use them.
 //!
 //! `tobj` parses. Before it does, the module `tidy` goes over the text for what `tobj` does not do: errors with a line number,
 //! triangles without normals among others, comments behind numbers, continued lines, `l` that is no polygon.
 
 mod mtl;
+mod textures;
 mod tidy;
 mod write;
 
@@ -34,26 +35,23 @@ use tidy::Outline;
 pub fn read(path: &Path, progress: &dyn Progress) -> Result<(Model, Vec<String>), Error> {
     let mut text = decompress::read(path, progress)?;
     let outline = tidy::tidy(&mut text, path, progress)?;
+    let mut warnings = Vec::new();
+    let library = mtl::read(path, &outline, &mut warnings)?;
+    let textured = library.iter().flatten().any(|m| m.texture.is_some());
+    match outline.bad_uv {
+        Some(line) if textured => {
+            let message = "a texture coordinate has two finite numbers: correct it, or remove the textures".into();
+            return Err(Error::Data { path: path.to_owned(), line: Some(line), message });
+        }
+        _ if textured => {}
+        _ => tidy::without_uvs(&mut text),
+    }
     let mut mesh = parse(&text, path, progress)?;
     drop(text);
     finish_normals(&mut mesh, &outline);
-    let mut warnings = Vec::new();
-    let library = mtl::read(path, &outline, &mut warnings)?;
+    finish_uvs(&mut mesh, &outline);
     let materials = assign_materials(&mut mesh, &outline, library, path, &mut warnings);
-    let name = stem(path).unwrap_or_default();
-    // Many exporters write an ambient coefficient of 1 for everything: at full light it would wash the picture out.
-    let ambient = 0.1;
-    let scene = Model { name, mesh, materials, lights: Vec::new(), camera: None, ambient, background: Model::SKY };
-    Ok((scene, warnings))
-}
-
-/// The file's name without `.obj`, `.obj.gz` or `.obj.zst`.
-fn stem(path: &Path) -> Option<String> {
-    let inner = match path.extension()?.to_ascii_lowercase().to_str() {
-        Some("gz" | "zst") => Path::new(path.file_stem()?),
-        _ => path,
-    };
-    Some(inner.file_stem()?.to_string_lossy().into_owned())
+    Ok((Model { materials, ..Model::of_mesh(path, mesh) }, warnings))
 }
 
 /// Lets `tobj` read the tidied text. Nothing in it opens a new model, so there is one, with all faces in file order.
@@ -73,6 +71,8 @@ fn parse(text: &[u8], path: &Path, progress: &dyn Progress) -> Result<Mesh, Erro
         triangles: m.indices.as_chunks().0.to_vec(),
         normals: m.normals.as_chunks().0.to_vec(),
         normal_indices: m.normal_indices.as_chunks().0.to_vec(),
+        uvs: m.texcoords.as_chunks().0.to_vec(),
+        uv_indices: m.texcoord_indices.as_chunks().0.to_vec(),
         materials: Vec::new(),
     })
 }
@@ -85,25 +85,20 @@ fn finish_normals(mesh: &mut Mesh, outline: &Outline) {
     for run in &outline.flat {
         mesh.normal_indices[run.clone()].fill(Mesh::FLAT);
     }
-    let zero: Vec<bool> = mesh.normals.iter_mut().map(|n| !make_unit(n)).collect();
-    for triple in mesh.normal_indices.iter_mut().filter(|t| **t != Mesh::FLAT) {
-        if triple.iter().any(|&n| zero[n as usize]) {
-            *triple = Mesh::FLAT;
-        }
-    }
-    if mesh.normal_indices.iter().all(|t| *t == Mesh::FLAT) {
-        (mesh.normals, mesh.normal_indices) = (Vec::new(), Vec::new());
-    }
+    mesh.unit_normals();
 }
 
-/// False when the vector is zero. One that is of unit length but for rounding keeps its bits.
-fn make_unit(normal: &mut [f32; 3]) -> bool {
-    let square: f64 = normal.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
-    if (square - 1.0).abs() > 4.0 * f64::from(f32::EPSILON) && square > 0.0 {
-        let length = square.sqrt();
-        *normal = normal.map(|x| (f64::from(x) / length) as f32);
+/// No texture coordinates where the file gives none.
+fn finish_uvs(mesh: &mut Mesh, outline: &Outline) {
+    if mesh.uv_indices.is_empty() {
+        return;
     }
-    square > 0.0
+    for run in &outline.bare {
+        mesh.uv_indices[run.clone()].fill(Mesh::FLAT);
+    }
+    if mesh.uv_indices.iter().all(|t| *t == Mesh::FLAT) {
+        (mesh.uvs, mesh.uv_indices) = (Vec::new(), Vec::new());
+    }
 }
 
 /// Gives each triangle its material; those that no library has are made up.

@@ -1,8 +1,10 @@
 //! Material libraries.
 
+use super::textures::{self, Map, Textures};
 use super::tidy::Outline;
 use crate::Error;
 use crate::model::{Material, Reflection};
+use std::collections::HashMap;
 use std::fmt::Write;
 use std::fs;
 use std::io;
@@ -40,16 +42,13 @@ pub(super) fn read(obj: &Path, outline: &Outline, warnings: &mut Vec<String>) ->
 }
 
 /// The file of that name, which may have been written where folders are separated by backslashes.
-fn locate(folder: &Path, name: &str) -> Option<PathBuf> {
+pub(super) fn locate(folder: &Path, name: &str) -> Option<PathBuf> {
     [folder.join(name), folder.join(name.replace('\\', "/"))].into_iter().find(|p| p.is_file())
 }
 
 fn parse(text: &str, path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Material>, Error> {
-    let (plain, textures) = tidy(text, path)?;
+    let (plain, maps) = tidy(text, path)?;
     let file = path.display();
-    if textures > 0 {
-        warnings.push(format!("{file}: textures are not read ({textures} map_Kd): the colours Kd are used"));
-    }
     let (materials, _) = tobj::load_mtl_buf(&mut plain.as_bytes()).map_err(|e| Error::Data {
         path: path.to_owned(),
         line: None,
@@ -70,9 +69,18 @@ fn parse(text: &str, path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Mate
             transmission: transmission.unwrap_or(default.transmission),
             reflection: reflection(&m, specular, &file.to_string(), warnings),
             name: m.name,
+            ..default
         }
     };
-    Ok(materials.into_iter().map(read).collect())
+    let mut materials: Vec<Material> = materials.into_iter().map(read).collect();
+    let mut textures = Textures { library: path, known: HashMap::new(), texels: 0 };
+    for map in maps {
+        match textures.read(&map) {
+            Ok(texture) => textures::put(&mut materials, &map, texture),
+            Err(reason) => warnings.push(format!("{file}:{}: the texture {reason}: the colour Kd is used", map.line)),
+        }
+    }
+    Ok(materials)
 }
 
 /// What the illumination model of the MTL specification (Wavefront, Advanced Visualizer, appendix B) is here.
@@ -98,16 +106,19 @@ fn reflection(m: &tobj::Material, specular: [f32; 3], file: &str, warnings: &mut
 }
 
 /// The lines that are used, with their numbers checked: `tobj` would drop the whole library for any line it does not
-/// like, and it panics on a colour of one number. Also returns how many colours come from textures.
-fn tidy(text: &str, path: &Path) -> Result<(String, usize), Error> {
-    let (mut plain, mut textures) = (String::new(), 0);
+/// like, and it panics on a colour of one number. Also returns the textures.
+fn tidy(text: &str, path: &Path) -> Result<(String, Vec<Map>), Error> {
+    let (mut plain, mut maps, mut materials) = (String::new(), Vec::new(), 0);
     for (i, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
         let fail = |message| Error::Data { path: path.to_owned(), line: Some(i + 1), message };
         let (keyword, rest) = line.trim().split_once(char::is_whitespace).unwrap_or((line.trim(), ""));
         let rest = rest.trim();
         match keyword {
             "newmtl" if rest.is_empty() => return Err(fail("a material needs a name".into())),
-            "newmtl" => _ = writeln!(plain, "newmtl {rest}"),
+            "newmtl" => {
+                materials += 1;
+                _ = writeln!(plain, "newmtl {rest}");
+            }
             // A colour as a spectrum is not for us: the default is used.
             "Ka" | "Kd" | "Ks" | "Ke" | "Tf" if rest.starts_with(['s', 'x']) => {}
             "Ka" | "Kd" | "Ks" | "Ke" | "Tf" => match numbers(rest).map_err(fail)?[..] {
@@ -133,11 +144,11 @@ fn tidy(text: &str, path: &Path) -> Result<(String, usize), Error> {
             // `-halo` and the like are left out.
             "d" => _ = dissolve(rest).map(|d| writeln!(plain, "d {d}")),
             "Tr" => _ = dissolve(rest).map(|t| writeln!(plain, "d {}", 1.0 - t)),
-            "map_Kd" => textures += 1,
+            "map_Kd" if materials > 0 => maps.push(Map::parse(materials - 1, i + 1, rest)),
             _ => {}
         }
     }
-    Ok((plain, textures))
+    Ok((plain, maps))
 }
 
 /// The number of a `d` or `Tr` line, if it is one that makes sense.

@@ -181,7 +181,7 @@ fn materials_of_a_library() {
     let bare = Material { emission: [1.0; 3], ..Material::grey("bare") };
     assert_eq!(scene.materials, [red, bare, Material::grey("default")]);
     assert_eq!(scene.mesh.materials, [2, 0, 1]);
-    assert!(warnings.len() == 1 && warnings[0].contains("1 map_Kd"), "{warnings:?}");
+    assert!(warnings.len() == 1 && warnings[0].contains("a b.mtl:10: the texture"), "{warnings:?}");
 }
 
 /// What `illum`, `Ke`, `Ni`, `Tf`, `d` and `Tr` mean, and which warnings there are.
@@ -221,7 +221,7 @@ fn reflection_models_of_a_library() {
 #[test]
 fn a_scene_is_named_after_its_file() {
     for (file, name) in [("a.obj", "a"), ("x/b.v2.OBJ.gz", "b.v2"), ("c.obj.zst", "c"), ("d.zst", "d")] {
-        assert_eq!(stem(Path::new(file)).as_deref(), Some(name));
+        assert_eq!(crate::model::stem(Path::new(file)).as_deref(), Some(name));
     }
 }
 
@@ -317,6 +317,7 @@ fn difficult_scenes_come_back_too() {
             normals: vec![[0.0, 0.6, 0.8], [1.0, 0.0, 0.0]],
             normal_indices: vec![Mesh::FLAT, [0, 0, 1], Mesh::FLAT, [1, 0, 0]],
             materials: vec![3, 0, 3, 1],
+            ..Mesh::default()
         },
         materials: vec![grey("a", 0.1), grey("a", 0.2), grey(" a\nb\\", 0.3), grey("", 0.4)],
         lights: vec![],
@@ -368,4 +369,45 @@ fn reading_can_be_cancelled_at_any_time() {
         }
     });
     assert!(questions.count() > 10, "several stages ask more than once");
+}
+
+/// Texture coordinates are there where something has a texture, and only then are they looked at.
+#[cfg(feature = "textures")]
+#[test]
+fn textures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let image = image::RgbImage::from_pixel(2, 1, image::Rgb([255, 0, 9]));
+    fs::create_dir(folder.path().join("maps")).expect("created");
+    image.save(folder.path().join("maps/a b.png")).expect("written");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("written");
+    let library = "map_Kd maps/a b.png\nnewmtl none\nKd 1 0 0\nmap_Kd maps/none.png\nnewmtl a\nKd 0 0 0\nmap_Kd -s 1 1 maps\\a b.png\n\
+                   newmtl b\nKd .5 .5 .5\nmap_Kd maps/a b.png\nnewmtl text\nmap_Kd a.mtl\n";
+    write("a.mtl", library);
+    let obj = format!(
+        "mtllib a.mtl\n{FOUR}vt 0 .5 9\nvt 1 0 # one\nvt 2 -1\nusemtl a\nf 1/2 2/3 3/1 4/3\nf 1 2 3\nf 1/1 2/2 3\n"
+    );
+    write("a.obj", &obj);
+    let (scene, warnings) = read(&folder.path().join("a.obj"), &Silent).expect("sound");
+    scene.validate().expect("sound");
+    assert_eq!(scene.mesh.uvs, [[1.0, 0.0], [2.0, -1.0], [0.0, 0.5]], "in order of first use");
+    assert_eq!(scene.mesh.uv_indices, [[0, 1, 2], [0, 2, 1], Mesh::FLAT, Mesh::FLAT]);
+    let [none, a, b, text] = &scene.materials[..] else { panic!("{:?}", scene.materials) };
+    assert!(none.texture.is_none() && text.texture.is_none() && none.diffuse == [1.0, 0.0, 0.0]);
+    assert_eq!((a.diffuse, b.diffuse), ([1.0; 3], [0.5; 3]), "where Kd is black the image stands for it");
+    assert_eq!(a.texture.as_ref().map(|t| (t.name(), t.size())), Some(("maps\\a b.png", (2, 1))));
+    assert!(std::sync::Arc::ptr_eq(a.texture.as_ref().expect("read"), b.texture.as_ref().expect("read")), "read once");
+    let [missing, no_image] = &warnings[..] else { panic!("{warnings:?}") };
+    assert!(
+        missing.contains("a.mtl:4: the texture ")
+            && missing.contains("none.png cannot be read (there is no such file): the colour Kd")
+    );
+    assert!(no_image.contains("a.mtl:12: ") && no_image.contains("only PNG and JPEG"), "{no_image}");
+
+    let nan = obj.replace("vt 1 0", "vt 1 nan");
+    write("a.obj", &nan);
+    let error = read(&folder.path().join("a.obj"), &Silent).expect_err("no number").to_string();
+    assert!(error.contains("a.obj:7: a texture coordinate has two finite numbers"), "{error}");
+    write("a.obj", &nan.replace("mtllib", "#"));
+    let (plain, _) = read(&folder.path().join("a.obj"), &Silent).expect("nobody wants them");
+    assert!(plain.mesh.uvs.is_empty() && plain.mesh.uv_indices.is_empty());
 }

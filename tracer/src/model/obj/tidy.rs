@@ -1,5 +1,5 @@
 //! The pass over an OBJ's text before `tobj` reads it: checks every `v`, `vn` and `f` and names the line of an error, notes
-//! what `tobj` would lose, and blanks all else in place, so that what it gets is plain: nothing but checked `v`, `vn` and `f` lines.
+//! what `tobj` would lose, and blanks all else in place, so that what it gets is plain: nothing but checked `v`, `vn`, `vt` and `f` lines.
 
 use crate::Error;
 use crate::bvh::Node;
@@ -19,6 +19,10 @@ pub(super) struct Outline {
     pub(super) runs: Vec<(usize, usize)>,
     /// Triangles that lack a normal at some corner.
     pub(super) flat: Vec<Range<usize>>,
+    /// Triangles that lack a texture coordinate at some corner.
+    pub(super) bare: Vec<Range<usize>>,
+    /// Line of the first texture coordinate that is not acceptable, should any be wanted.
+    pub(super) bad_uv: Option<usize>,
     triangles: usize,
 }
 
@@ -61,6 +65,15 @@ pub(super) fn tidy(text: &mut [u8], path: &Path, progress: &dyn Progress) -> Res
         return Err(Error::Data { path: path.to_owned(), line: None, message });
     }
     Ok(pass.outline)
+}
+
+/// Blanks all texture coordinates of a tidied text.
+pub(super) fn without_uvs(text: &mut [u8]) {
+    for line in text.split_mut(|&b| b == b'\n') {
+        if next_word(line, 0).is_some_and(|word| line[word] == *b"vt") {
+            line.fill(b' ');
+        }
+    }
 }
 
 /// The end of the line that begins (or goes on) at `from`: place of its newline, or of the text's end.
@@ -112,7 +125,10 @@ impl Pass<'_> {
             b"v" => return self.vertex(line, end),
             b"vn" => return self.normal(line, end),
             b"f" => return self.face(line, end),
-            b"vt" => self.counts[1] += 1,
+            b"vt" => {
+                self.texture_coordinate(line, end);
+                return Ok(());
+            }
             b"usemtl" => self.use_material(&line[end..])?,
             b"mtllib" => {
                 let name = self.text(&line[end..])?.trim().to_owned();
@@ -179,12 +195,30 @@ impl Pass<'_> {
         Ok(())
     }
 
+    fn texture_coordinate(&mut self, line: &mut [u8], mut at: usize) {
+        let mut numbers = 0;
+        while let Some(word) = next_number(line, at) {
+            at = word.end;
+            numbers += 1;
+            // The third is for textures that are no images.
+            if numbers <= 2 && self.finite("texture coordinate", &line[word]).is_err() {
+                numbers = 0;
+                break;
+            }
+        }
+        if numbers < 2 {
+            self.outline.bad_uv.get_or_insert(self.line);
+        }
+        self.counts[1] += 1;
+    }
+
     fn face(&mut self, line: &mut [u8], mut at: usize) -> Result<(), Error> {
-        let (mut corners, mut smooth) = (0, true);
+        let (mut corners, mut all) = (0, [true; 3]);
         while let Some(word) = next_number(line, at) {
             at = word.end;
             corners += 1;
-            smooth &= self.corner(&line[word])?;
+            let has = self.corner(&line[word])?;
+            (0..3).for_each(|kind| all[kind] &= has[kind]);
         }
         if corners < 3 {
             return self
@@ -196,19 +230,20 @@ impl Pass<'_> {
             return self.fail(format!("more than {} triangles: split the scene", Node::MAX_TRIANGLES));
         }
         self.outline.triangles = end;
-        if !smooth {
-            match self.outline.flat.last_mut() {
+        for (all, runs) in [(all[1], &mut self.outline.bare), (all[2], &mut self.outline.flat)] {
+            match runs.last_mut() {
+                _ if all => {}
                 Some(run) if run.end == first => run.end = end,
-                _ => self.outline.flat.push(first..end),
+                _ => runs.push(first..end),
             }
         }
         Ok(())
     }
 
-    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn`; true when there is a normal.
-    fn corner(&self, word: &[u8]) -> Result<bool, Error> {
+    /// Checks `v`, `v/vt`, `v//vn` or `v/vt/vn`: which of the three are there.
+    fn corner(&self, word: &[u8]) -> Result<[bool; 3], Error> {
         const KINDS: [&str; 3] = ["vertex", "texture coordinate", "normal"];
-        let mut has_normal = false;
+        let mut has = [false; 3];
         for (kind, part) in word.split(|&b| b == b'/').enumerate() {
             if kind > 0 && part.is_empty() {
                 continue;
@@ -221,14 +256,14 @@ impl Pass<'_> {
             let hint = match index {
                 0 => "they count from 1 (or from -1 backwards)",
                 _ if index.unsigned_abs() <= count as u64 => {
-                    has_normal = kind == 2;
+                    has[kind] = true;
                     continue;
                 }
                 _ => "correct the index, or move the face below what it uses",
             };
             return self.fail(format!("the face uses {name} {index}, but there are {count} above it: {hint}"));
         }
-        Ok(has_normal)
+        Ok(has)
     }
 
     fn use_material(&mut self, rest: &[u8]) -> Result<(), Error> {

@@ -10,7 +10,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// Writes a scene's mesh and materials as `.obj` with an `.mtl` of the same stem beside it; lights and camera have no place in
-/// them. Both files appear whole or not at all. Reading them back ([`super::read`]) gives the same triangles under the
+/// them, textures and their coordinates are left out. Both files appear whole or not at all. Reading them back ([`super::read`]) gives the same triangles under the
 /// same ids, all numbers with the same bits; vertices come back in order of first use, unused ones not at all. Material
 /// names are made unique, without blanks at their ends.
 ///

@@ -79,7 +79,7 @@ impl Identity {
 /// Of all that can be seen. Whoever adds a field decides here whether it can be.
 fn hash(model: &Model) -> u64 {
     let Model { name: _, mesh, materials, lights, camera: _, ambient, background } = model;
-    let Mesh { positions, triangles, normals, normal_indices, materials: of_triangles } = mesh;
+    let Mesh { positions, triangles, normals, normal_indices, materials: of_triangles, uvs, uv_indices } = mesh;
     let floats = |list: &[[f32; 3]]| fnv1a(list.as_flattened().iter().map(|c| c.to_bits()));
     let words = |list: &[[u32; 3]]| fnv1a(list.as_flattened().iter().copied());
     let mut parts = vec![
@@ -88,12 +88,16 @@ fn hash(model: &Model) -> u64 {
         floats(normals),
         words(normal_indices),
         fnv1a(of_triangles.iter().copied()),
+        fnv1a(uvs.as_flattened().iter().map(|c| c.to_bits())),
+        words(uv_indices),
     ];
     for material in materials {
-        let Material { name: _, ambient, diffuse, specular, shininess, emission, ior, transmission, reflection } =
-            material;
+        let Material { name: _, ambient, diffuse, specular, shininess, emission, ior, transmission, .. } = material;
+        let Material { reflection, texture, texture_on_specular, .. } = material;
         parts.push(floats(&[*ambient, *diffuse, *specular, *emission, *transmission, [*shininess, *ior, 0.0]]));
         parts.push(*reflection as u64);
+        parts.push(u64::from(*texture_on_specular));
+        parts.push(texture.as_ref().map_or(0, |texture| texture.hash()));
     }
     for Light { position, intensity } in lights {
         parts.push(floats(&[*position, *intensity]));

@@ -3,7 +3,7 @@
 use super::place::Place;
 use super::{Config, camera};
 use crate::Error;
-use crate::geometry::HitBatch;
+use crate::geometry::{HitBatch, Vec3};
 use crate::method::{Context, Method};
 use crate::model::Camera;
 use crate::render::Scenery;
@@ -54,9 +54,14 @@ impl Layers {
             let place = Place::<f32>::load(scenery, &rays.blocks()[i / 16], &hits.blocks()[i / 16], i % 16);
             let at = crop.place(*pixel);
             let material = place.material.0;
+            let textures = &scenery.surfaces.textures;
+            let tint = match textures.is_empty() {
+                true => Vec3::splat([1.0; 3]),
+                false => place.tint(textures, &hits.blocks()[i / 16], i % 16),
+            };
             layers.depth[at] = place.distance;
             layers.normal[at] = [place.normal.x, place.normal.y, place.normal.z];
-            layers.albedo[at] = scenery.albedo(material);
+            layers.albedo[at] = scenery.albedo(material, tint);
             layers.primitive[at] = hit.primitive;
             layers.material[at] = material;
         }

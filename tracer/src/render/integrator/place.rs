@@ -4,6 +4,7 @@ use crate::geometry::{Hit, HitBlock, RayBlock, Vec3};
 use crate::render::material::negate;
 use crate::render::scenery::{OFFSET, Scenery};
 use crate::render::shade::{normal, word, words3};
+use crate::render::textures::Textures;
 use simd::{Float, Vector};
 
 /// A point of a surface, per lane.
@@ -60,6 +61,14 @@ impl<F: Float> Place<F> {
             material: word(&scenery.surfaces.triangles, primitive, 4, 3, hit),
             distance: F::load_block(&hits.t, chunk) * length,
         }
+    }
+
+    /// What textures multiply its colours by. There must be textures; `hits` are those that it is of.
+    #[inline(always)]
+    pub(super) fn tint(&self, textures: &Textures, hits: &HitBlock, chunk: usize) -> Vec3<F> {
+        let primitive = F::Index::load_block(&hits.primitive, chunk);
+        let place = [F::load_block(&hits.u, chunk), F::load_block(&hits.v, chunk)];
+        textures.tint(self.material, primitive, place, self.hit)
     }
 
     /// Where a ray starts that leaves the surface on the side of the eye.

@@ -56,6 +56,8 @@ pub(super) struct Shaded {
 #[derive(Debug, Clone)]
 pub(super) struct Scratch {
     place: Columns<14>,
+    /// What textures multiply colours by; nothing where there are none.
+    tint: Columns<3>,
     pub(super) light: Columns<7>,
     pub(super) next: Columns<10>,
     pub(super) models: Box<[u32; ROWS]>,
@@ -82,6 +84,7 @@ impl Scratch {
     pub(super) fn new() -> Self {
         Self {
             place: Columns::new(),
+            tint: Columns::new(),
             light: Columns::new(),
             next: Columns::new(),
             models: Box::new([NOTHING; ROWS]),
@@ -203,6 +206,11 @@ impl Portion<'_> {
             columns.store3(TO_EYE, first, place.to_eye);
             columns.store(OFFSET, first, place.offset);
             columns.store(SIDE, first, place.side);
+            let textures = &scenery.surfaces.textures;
+            if !textures.is_empty() {
+                let tint = place.tint(textures, &self.hits[block], chunk);
+                self.scratch.tint.store3(0, first, tint);
+            }
 
             let materials = &scenery.materials;
             let emission = words3::<F>(materials, place.material, Scenery::MATERIAL, 11, hit);
@@ -260,10 +268,16 @@ impl Portion<'_> {
     /// Third step: what comes of it, and the ray to it.
     #[inline(always)]
     fn lights<F: Float>(&mut self, shadows: &mut Shadows) {
-        let Scratch { place, light, materials, groups, .. } = &mut *self.scratch;
+        let scenery = self.wave.scenery;
+        let Scratch { place, tint, light, materials, groups, .. } = &mut *self.scratch;
         let list = |i| &self.wave.paths.list(THROUGHPUT + i)[self.first..][..self.len];
         let throughput = [list(0), list(1), list(2)];
-        groups.each::<F, _>(&mut Values { wave: self.wave, throughput, place, light, materials });
+        groups.each::<F, _>(&mut Values {
+            surface: Surface { scenery, place, tint, materials },
+            wave: self.wave,
+            throughput,
+            light,
+        });
 
         shadows.reserve(self.len);
         let mut first = 0;
@@ -290,10 +304,18 @@ impl Portion<'_> {
             self.scratch.next.store3(THROUGHPUT, first, Vec3::<F>::splat([0.0; 3]));
             first += F::LANES;
         }
-        let Scratch { place, next, materials, pixels, groups, .. } = &mut *self.scratch;
+        let scenery = self.wave.scenery;
+        let Scratch { place, tint, next, materials, pixels, groups, .. } = &mut *self.scratch;
         let list = |i| &self.wave.paths.list(THROUGHPUT + i)[self.first..][..self.len];
         let throughput = [list(0), list(1), list(2)];
-        groups.each::<F, _>(&mut Directions { wave: self.wave, branch, throughput, place, next, materials, pixels });
+        groups.each::<F, _>(&mut Directions {
+            surface: Surface { scenery, place, tint, materials },
+            wave: self.wave,
+            branch,
+            throughput,
+            next,
+            pixels,
+        });
 
         paths.reserve(self.len);
         let mut first = 0;
@@ -335,36 +357,46 @@ pub(super) fn power_heuristic<F: Float>(ratio: F, own: F) -> F {
     F::select(F::splat(0.0).lt(own), one / (one + ratio * ratio), F::splat(0.0))
 }
 
-/// What models read, and the frame of the surface.
-#[inline(always)]
-fn parameters<F: Float>(
-    scenery: &Scenery,
-    place: &Columns<14>,
-    materials: &[u32; ROWS],
-    rows: Rows<F>,
-    options: Options,
-) -> (Parameters<F>, Frame<F>) {
-    let material = F::Index::gather_masked(materials, rows.index, rows.on, F::Index::default());
-    let table = &scenery.materials[..];
-    let parameters = Parameters {
-        diffuse: words3(table, material, Scenery::MATERIAL, 0, rows.on),
-        specular: words3(table, material, Scenery::MATERIAL, 3, rows.on),
-        shininess: word(table, material, Scenery::MATERIAL, 6, rows.on),
-        transmission: words3(table, material, Scenery::MATERIAL, 7, rows.on),
-        ior: word(table, material, Scenery::MATERIAL, 10, rows.on),
-        front: F::splat(0.0).lt(place.get(SIDE, rows)),
-        options,
-    };
-    (parameters, Frame::around(place.get3(NORMAL, rows)))
+/// The surface at all places.
+#[derive(Clone, Copy)]
+struct Surface<'a> {
+    scenery: &'a Scenery,
+    place: &'a Columns<14>,
+    tint: &'a Columns<3>,
+    materials: &'a [u32; ROWS],
+}
+
+impl Surface<'_> {
+    /// What models read, and the frame of the surface.
+    #[inline(always)]
+    fn parameters<F: Float>(&self, rows: Rows<F>, options: Options) -> (Parameters<F>, Frame<F>) {
+        let material = F::Index::gather_masked(self.materials, rows.index, rows.on, F::Index::default());
+        let table = &self.scenery.materials[..];
+        let mut parameters = Parameters {
+            diffuse: words3(table, material, Scenery::MATERIAL, 0, rows.on),
+            specular: words3(table, material, Scenery::MATERIAL, 3, rows.on),
+            shininess: word(table, material, Scenery::MATERIAL, 6, rows.on),
+            transmission: words3(table, material, Scenery::MATERIAL, 7, rows.on),
+            ior: word(table, material, Scenery::MATERIAL, 10, rows.on),
+            front: F::splat(0.0).lt(self.place.get(SIDE, rows)),
+            options,
+        };
+        let textures = &self.scenery.surfaces.textures;
+        if !textures.is_empty() {
+            let tint = self.tint.get3(0, rows);
+            parameters.diffuse = parameters.diffuse * tint;
+            parameters.specular = textures.specular(parameters.specular, tint, material, rows.on);
+        }
+        (parameters, Frame::around(self.place.get3(NORMAL, rows)))
+    }
 }
 
 /// What the model makes of the light from a light source.
 struct Values<'a> {
+    surface: Surface<'a>,
     wave: &'a Wave<'a>,
     throughput: [&'a [f32]; 3],
-    place: &'a Columns<14>,
     light: &'a mut Columns<7>,
-    materials: &'a [u32; ROWS],
 }
 
 impl<F: Float> Step<F> for Values<'_> {
@@ -373,13 +405,14 @@ impl<F: Float> Step<F> for Values<'_> {
         if !M::LIT {
             return;
         }
-        let Wave { scenery, rules, .. } = *self.wave;
+        let Surface { place, .. } = self.surface;
+        let rules = self.wave.rules;
         let options = Options { coat_alone: rules.coat_alone, branch: Branch::Random };
-        let (parameters, frame) = parameters(scenery, self.place, self.materials, rows, options);
-        let to_eye = frame.local(self.place.get3(TO_EYE, rows));
+        let (parameters, frame) = self.surface.parameters(rows, options);
+        let to_eye = frame.local(place.get3(TO_EYE, rows));
         let direction = self.light.get3::<F>(TO_LIGHT, rows).normalize();
         let to_light = frame.local(direction);
-        let above = F::splat(0.0).lt(to_light.z) & F::splat(0.0).lt(direction.dot(self.place.get3(FACE, rows)));
+        let above = F::splat(0.0).lt(to_light.z) & F::splat(0.0).lt(direction.dot(place.get3(FACE, rows)));
 
         let mut share = F::splat(1.0);
         if rules.mis && !rules.last {
@@ -395,12 +428,11 @@ impl<F: Float> Step<F> for Values<'_> {
 
 /// Where the model sends a ray on.
 struct Directions<'a> {
+    surface: Surface<'a>,
     wave: &'a Wave<'a>,
     branch: Branch,
     throughput: [&'a [f32]; 3],
-    place: &'a Columns<14>,
     next: &'a mut Columns<10>,
-    materials: &'a [u32; ROWS],
     pixels: &'a [u32; ROWS],
 }
 
@@ -410,22 +442,23 @@ impl<F: Float> Step<F> for Directions<'_> {
         if !M::follows(self.branch) {
             return;
         }
-        let Wave { scenery, rules, sampler, sample, depth, .. } = *self.wave;
+        let Surface { place, .. } = self.surface;
+        let Wave { rules, sampler, sample, depth, .. } = *self.wave;
         let options = Options { coat_alone: rules.coat_alone, branch: self.branch };
-        let (parameters, frame) = parameters(scenery, self.place, self.materials, rows, options);
-        let to_eye = frame.local(self.place.get3(TO_EYE, rows));
+        let (parameters, frame) = self.surface.parameters(rows, options);
+        let to_eye = frame.local(place.get3(TO_EYE, rows));
         let pixel = F::Index::gather_masked(self.pixels, rows.index, rows.on, F::Index::default());
         let point = sampler.pair::<F>(pixel, sample, 3 + 4 * depth);
         let [lobe, survival] = sampler.pair::<F>(pixel, sample, 4 + 4 * depth);
         let chosen = M::sample(&parameters, to_eye, point, lobe);
 
         let direction = frame.world(chosen.to_light).normalize();
-        let face = self.place.get3::<F>(FACE, rows);
+        let face = place.get3::<F>(FACE, rows);
         let along = direction.dot(face);
         // On the same side of the triangle as of the normal to shade with.
         let possible = F::splat(0.0).lt(along.mul_sign(chosen.to_light.z));
-        let offset = self.place.get::<F>(OFFSET, rows).mul_sign(along);
-        let origin = self.place.get3(POSITION, rows) + face.scale(offset);
+        let offset = place.get::<F>(OFFSET, rows).mul_sign(along);
+        let origin = place.get3(POSITION, rows) + face.scale(offset);
 
         let (zero, infinity) = (F::splat(0.0), F::splat(f32::INFINITY));
         let mut throughput = throughput(self.throughput, rows) * chosen.weight;

@@ -1,7 +1,7 @@
-//! Stanford PLY.
+//! Writing PLY.
 
-use super::Mesh;
 use crate::Error;
+use crate::model::Mesh;
 use crate::output::{stage, step};
 use crate::progress::Progress;
 use std::io::{self, Write};
