@@ -45,7 +45,7 @@ struct Line {
 
 fn figure_6(counts: &Counts, area: &Area<'_>) -> Drawn {
     let lines = counts.benefits.iter().enumerate().map(|(i, benefit)| Line {
-        name: format!("{} bounces, {}", benefit.bounces, benefit.intervals),
+        name: format!("bounces: {}, {}", benefit.bounces, benefit.intervals),
         color: COLORS[i / 2 % COLORS.len()],
         dashed: benefit.intervals == "loose",
         points: (0..).map(f64::from).zip(benefit.by_depth.iter().copied()).collect(),
@@ -67,7 +67,7 @@ fn figure_8(counts: &Counts, area: &Area<'_>) -> Drawn {
 
 fn draw_lines(area: &Area<'_>, title: &str, y_title: &str, lines: &[Line]) -> Drawn {
     let points = || lines.iter().flat_map(|line| &line.points);
-    let end = points().map(|p| p.0).fold(1.0, f64::max);
+    let end = points().map(|p| p.0).fold(10.0, f64::max);
     let low = points().map(|p| p.1).fold(0.0, f64::min);
     let high = points().map(|p| p.1).fold(0.0, f64::max);
     // Without points there is still an axis.
@@ -104,18 +104,18 @@ fn figure_7(counts: &Counts, area: &Area<'_>) -> Drawn {
         let values: Vec<[f64; 3]> =
             WIDTHS.iter().map(|&width| COMPARED.map(|(t, _)| value(width, t, of_boxes).unwrap_or(0.0))).collect();
         let high = values.as_flattened().iter().copied().fold(1.0, f64::max);
-        let mut chart = builder(area, title).build_cartesian_2d(0.0..WIDTHS.len() as f64, 0.0..1.2 * high)?;
-        let name = |x: &f64| WIDTHS.get(x.floor() as usize).map_or(String::new(), |width| format!("width {width}"));
+        let mut chart = builder(area, title).build_cartesian_2d(0.0..WIDTHS.len() as f64 + 0.5, 0.0..1.25 * high)?;
         chart
             .configure_mesh()
             .disable_x_mesh()
             .disable_x_axis()
             .y_desc("SIMD speed-up")
             .y_labels(5)
-            .y_label_formatter(&|y| format!("{y:.0}"))
+            .y_label_formatter(&|y| format!("{y:.1}"))
             .label_style(("sans-serif", 15))
             .light_line_style(WHITE)
             .draw()?;
+        // To the right of the bars there is room for the legend.
         for (i, (_, label)) in COMPARED.into_iter().enumerate() {
             let color = COLORS[i];
             let left = |group: usize| group as f64 + 0.14 + 0.24 * i as f64;
@@ -132,9 +132,8 @@ fn figure_7(counts: &Counts, area: &Area<'_>) -> Drawn {
             }))?;
         }
         let large = ("sans-serif", 16).into_font().color(&BLACK);
-        chart.draw_series((0..WIDTHS.len()).map(|group| {
-            let x = group as f64 + 0.01;
-            Text::new(name(&x), (x, 1.15 * high), large.clone())
+        chart.draw_series(WIDTHS.iter().enumerate().map(|(group, width)| {
+            Text::new(format!("width {width}"), (group as f64 + 0.4, 1.2 * high), large.clone())
         }))?;
         legend_of(&mut chart)?;
     }
@@ -197,7 +196,7 @@ mod tests {
         for by_depth in [&[0.5, -0.25, 0.125][..], &[]] {
             let figures = all(&counts(by_depth)).expect("drawn");
             for ((name, text), words) in figures.iter().zip([
-                ["depth of the node", "2 bounces, loose", "box tests saved"],
+                ["depth of the node", "bounces: 2, loose", "box tests saved"],
                 ["width 16", "adaptive", "Rays per triangle test"],
                 ["depth of the node", "exact", "lanes at work"],
             ]) {
