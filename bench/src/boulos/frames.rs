@@ -1,5 +1,6 @@
 //! Seconds per frame: the same rays by all methods in turn, and the rest of the frame.
 
+use super::clock::{Timed, timed};
 use super::scenes::{Name, Scene, Surface};
 use crate::console::Console;
 use serde::Serialize;
@@ -8,13 +9,12 @@ use std::collections::hash_map::DefaultHasher;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 use std::str::FromStr;
-use std::time::Instant;
 use tracer::Error;
 use tracer::geometry::{HitBatch, RayBatch};
 use tracer::method::{Auto, BitVec, Context, Method, Reordering, Single, Traversal, Width};
 use tracer::progress::{Progress, Silent};
 use tracer::render::Scenery;
-use tracer::render::integrator::{self, Config, Integrator, Means, Observer, Path, Query, Rendering};
+use tracer::render::integrator::{self, Config, Integrator, Means, Observer, Path, Query};
 
 /// A column of the tables.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -189,10 +189,9 @@ pub fn measure(work: &Work<'_>, setup: Setup, task: &Task<'_>) -> Result<Frames,
         for (i, &bounces) in bounces.iter().enumerate() {
             // Single rays gain nothing by grouping: "only single ray avoids this step" (section 5).
             for (grouped, rest) in [true, false].into_iter().zip(&mut rest[i]) {
-                let rendering = render(work, &*methods[Column::Auto as usize], setup, bounces, grouped, task, None)?;
-                let times = rendering.times;
-                rays[i] = times.rays();
-                rest.push((times.generation + times.shading).as_secs_f64());
+                let took = render(work, &*methods[Column::Auto as usize], setup, bounces, grouped, task, None)?;
+                rays[i] = took.rays;
+                rest.push(took.parts[1] + took.parts[2]);
                 task.console.advance(1);
             }
         }
@@ -308,12 +307,11 @@ impl Asked {
         rays: &RayBatch,
         cx: &mut Context<'_>,
     ) -> Result<f64, Error> {
-        let start = Instant::now();
-        match query {
-            Query::Closest => method.closest(rays, &mut self.hits, cx)?,
-            Query::Any => method.any(rays, &mut self.occluded, cx)?,
-        }
-        Ok(start.elapsed().as_secs_f64())
+        let (done, seconds) = timed(|| match query {
+            Query::Closest => method.closest(rays, &mut self.hits, cx),
+            Query::Any => method.any(rays, &mut self.occluded, cx),
+        });
+        done.map(|()| seconds)
     }
 
     /// Of the last answer.
@@ -329,6 +327,13 @@ impl Asked {
     }
 }
 
+/// What a frame took.
+pub struct Took {
+    pub rays: u64,
+    /// Seconds of traversal, shading, generation.
+    pub parts: [f64; 3],
+}
+
 /// A whole frame.
 pub fn render<'b>(
     work: &Work<'_>,
@@ -338,13 +343,21 @@ pub fn render<'b>(
     group_shading: bool,
     task: &Task<'b>,
     observer: Option<&mut Observer<'b>>,
-) -> Result<Rendering, Error> {
+) -> Result<Took, Error> {
     let coat_alone = work.surface == Surface::Glossy;
     let integrator = Integrator::Path(Path { bounces, coat_alone, ..Path::default() });
     let config = Config { integrator, level: setup.level, group_shading, ..Config::new(task.size, task.size) };
     let mut cx = Context { counters: None, cancel: Some(task.console.cancel()) };
-    let means = Means { method, cx: &mut cx, observer, progress: &Silent };
-    integrator::render(&work.scene.model, work.scenery, work.scene.camera, &config, means)
+    let method = Timed::new(method);
+    let means = Means { method: &method, cx: &mut cx, observer, progress: &Silent };
+    let (rendering, seconds) =
+        timed(|| integrator::render(&work.scene.model, work.scenery, work.scene.camera, &config, means));
+    let times = rendering?.times;
+    // The rest is divided as the renderer's own clock, that on the wall, has it.
+    let rest = (seconds - method.seconds()).max(0.0);
+    let (shading, generation) = (times.shading.as_secs_f64(), times.generation.as_secs_f64());
+    let shading = rest * shading / (shading + generation).max(1e-9);
+    Ok(Took { rays: times.rays(), parts: [method.seconds(), shading, rest - shading] })
 }
 
 /// A frame that was rendered by one method from beginning to end.
@@ -369,10 +382,10 @@ pub fn whole(work: &Work<'_>, setup: Setup, task: &Task<'_>) -> Result<Vec<Whole
     for _ in 0..task.repeat {
         for (column, parts) in columns.into_iter().zip(&mut parts) {
             let method = column.method(work.scene, setup);
-            let times = render(work, &*method, setup, bounces, true, task, None)?.times;
-            rays = times.rays();
-            for (part, time) in parts.iter_mut().zip([times.traversal, times.shading, times.generation]) {
-                part.push(time.as_secs_f64());
+            let took = render(work, &*method, setup, bounces, true, task, None)?;
+            rays = took.rays;
+            for (seconds, part) in parts.iter_mut().zip(took.parts) {
+                seconds.push(part);
             }
             task.console.advance(1);
         }

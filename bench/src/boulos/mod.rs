@@ -1,6 +1,7 @@
 //! Tables 1 to 4 and figures 6 to 8 of Boulos, Wald and Benthin 2008, "Adaptive Ray Packet Reordering", measured anew.
 
 mod chart;
+mod clock;
 mod counts;
 mod frames;
 mod goals;
@@ -30,7 +31,7 @@ TRACER_SCENES names, else in ../shared/scenes; what is missing is left out. Tabl
 
 Examples:
   bench boulos --quick                              does it run?
-  bench boulos                                      all of it: leave the machine alone meanwhile
+  bench boulos                                      all of it
   bench boulos --scene conference --levels sse4.2:4,avx2:8 --repeat 5")]
 pub struct Args {
     /// A scene to measure; repeat it for more [default: all]

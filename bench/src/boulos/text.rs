@@ -61,9 +61,9 @@ fn head(report: &Report) -> String {
         "- machine: {}, {} hardware threads; one was used; load average {load} at the start\n\
          - levels and widths: {}; the first for all scenes, the others for the conference room's diffuse frames\n\
          - picture: {size}x{size}, 1 sample per pixel, one area light, one light sample per hit; no roulette, no attenuation\n\
-         - measured: wall-clock time. Every method is given the same batches of rays, those of a real frame, one method after the other on \
-         each batch, another one first in each round; medians of {repeat} rounds. A frame is the method's traversal, and making rays and \
-         shading (medians of rendering the frame {repeat} times, shading grouped by material model; ungrouped for Single, as in the paper)\n\
+         - measured: CPU time of one thread. Every method is given the same batches of rays, those of a real frame, one method after the other on \
+         each batch, another one first in each round; median of the rounds, of which there were {repeat}. A frame is the method's traversal, and making rays and \
+         shading (the median of as many frames, shading grouped by material model; ungrouped for Single, as in the paper)\n\
          - columns: the paper's five, on one binary tree; `wide`: single rays through a tree of 8 children a node; `auto`: as many rays together \
          as agree, through the same. In brackets the speed-up over Single\n\
          - surfaces: all of one kind; glossy ones follow their coat's lobe alone, its exponent {} (the paper does not name its own)\n\
