@@ -1,0 +1,185 @@
+//! The paper's scenes, or what is nearest to them, with its three kinds of surface and its lamp.
+
+use super::paper;
+use crate::console::Console;
+use clap::ValueEnum;
+use serde::Serialize;
+use std::fmt;
+use tracer::Error;
+use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
+use tracer::model::{Camera, Material, Mesh, Model, Reflection, builtin, obj};
+use tracer::progress::Progress;
+use tracer::render::Scenery;
+
+/// A scene of the paper, in the order of its tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+pub enum Name {
+    /// Crytek's Sponza in place of Dabrovic's
+    Sponza,
+    /// A stand-in: the built-in tree on its field
+    Fairy,
+    /// The conference room
+    Conference,
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Sponza => "Sponza",
+            Self::Fairy => "Fairy (stand-in)",
+            Self::Conference => "Conference",
+        })
+    }
+}
+
+/// What all surfaces of a scene are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub enum Surface {
+    /// Mirrors.
+    Specular,
+    /// A matt ground under a glossy coat, whose lobe alone is followed.
+    Glossy,
+    /// Matt.
+    Diffuse,
+}
+
+impl Surface {
+    /// The exponent of the coat's lobe: the paper has that of Boulos 2007, which it does not name.
+    pub const SHININESS: f32 = 100.0;
+
+    /// Reflections at most, from few to many.
+    pub fn bounces(self) -> [u32; 3] {
+        paper::table(self).bounces
+    }
+
+    /// Grey, so that no path ends because nothing is left of its light.
+    fn material(self) -> Material {
+        let (reflection, diffuse, specular) = match self {
+            Self::Specular => (Reflection::Mirror, 0.1, 0.8),
+            Self::Glossy => (Reflection::Glossy, 0.5, 0.2),
+            Self::Diffuse => (Reflection::Lambertian, 0.7, 0.0),
+        };
+        let matt = Material::matt("surface", [diffuse; 3]);
+        Material { specular: [specular; 3], shininess: Self::SHININESS, reflection, ..matt }
+    }
+}
+
+/// A horizontal rectangle that shines: `up` is the axis of its height, 1 or 2; the corners have the other two coordinates.
+struct Lamp {
+    up: usize,
+    height: f32,
+    from: [f32; 2],
+    to: [f32; 2],
+}
+
+/// A scene ready to be traced.
+pub struct Scene {
+    pub name: Name,
+    /// What it is, for the report.
+    pub what: String,
+    pub model: Model,
+    pub camera: Camera,
+    pub bvh: Bvh,
+    /// The same tree with 8 children a node, for single rays beside the paper's methods.
+    pub wide: WideBvh<8>,
+}
+
+impl Scene {
+    /// Reads it and builds its tree; none when its file is missing, which is said on standard output.
+    pub fn open(name: Name, console: &Console) -> Result<Option<Self>, Error> {
+        console.stage(&format!("{name}: reading"), 0);
+        let (file, label, camera, lamp) = match name {
+            Name::Sponza => (
+                Some("crytek_sponza"),
+                "Crytek's atrium in place of Dabrovic's of 76 k",
+                view([-60.96, 86.0, 10.16], [0.826, -0.438, -0.356], [0.0, 1.0, 0.0], 43.6),
+                // Above the opening of the roof, which stays open around it.
+                Lamp { up: 1, height: 140.0, from: [-60.0, -25.0], to: [50.0, 18.0] },
+            ),
+            Name::Fairy => (
+                None,
+                "a stand-in for the paper's Fairy of 174 k, which is not to be had: the built-in scene tree:9, open and of uneven depth",
+                view([4.5, 0.4, 2.0], [-4.5, -0.4, -0.5], [0.0, 0.0, 1.0], 45.0),
+                Lamp { up: 2, height: 8.0, from: [-4.0, -4.0], to: [4.0, 4.0] },
+            ),
+            Name::Conference => (
+                Some("conference"),
+                "the LBL conference room (Anat Grynberg and Greg Ward), as the paper's of 282 k",
+                view([6.9742, 8.7685, 4.6396], [0.7818, 0.5406, -0.3107], [0.0, 0.0, 1.0], 73.74),
+                // Almost the full ceiling, which is at 8.9.
+                Lamp { up: 2, height: 8.8, from: [1.0, 1.0], to: [34.5, 21.0] },
+            ),
+        };
+        let mut model = match file {
+            None => builtin("tree:9").unwrap_or_else(|| Err(Error::Usage("there is no built-in tree".into())))?,
+            Some(file) => match ::tests::real_scene(file) {
+                Some(path) => obj::read(&path, console)?.0,
+                None => return Ok(None),
+            },
+        };
+        let triangles = model.mesh.triangles.len();
+        hang(&lamp, &mut model.mesh);
+        model.lights.clear();
+        let bvh = Bvh::build(&model.mesh, &BuildConfig::default(), console)?;
+        let wide = bvh.collapse(&CollapseConfig::default());
+        console.clear();
+        let what = format!("{triangles} triangles, {label}; camera {camera}");
+        Ok(Some(Self { name, what, model, camera, bvh, wide }))
+    }
+
+    /// Makes all surfaces of one kind, the lamp as well.
+    pub fn paint(&mut self, surface: Surface) -> Result<Scenery, Error> {
+        let surface = surface.material();
+        self.model.materials = vec![surface.clone(), Material { emission: [10.0; 3], ..surface }];
+        self.model.validate()?;
+        Ok(Scenery::new(&self.model, &self.camera))
+    }
+}
+
+fn view(eye: [f32; 3], forward: [f32; 3], up: [f32; 3], fov: f32) -> Camera {
+    Camera { eye, at: [eye[0] + forward[0], eye[1] + forward[1], eye[2] + forward[2]], up, fov }
+}
+
+/// Adds the lamp's two triangles, which are of material 1; all others are of material 0.
+fn hang(lamp: &Lamp, mesh: &mut Mesh) {
+    let first = mesh.positions.len() as u32;
+    let corner = |u, v| if lamp.up == 1 { [u, lamp.height, v] } else { [u, v, lamp.height] };
+    let [[u0, v0], [u1, v1]] = [lamp.from, lamp.to];
+    mesh.positions.extend([corner(u0, v0), corner(u1, v0), corner(u1, v1), corner(u0, v1)]);
+    mesh.materials = vec![0; mesh.triangles.len()];
+    mesh.triangles.extend([[0, 1, 2], [0, 2, 3]].map(|t| t.map(|i: u32| first + i)));
+    mesh.materials.extend([1, 1]);
+    if !mesh.normal_indices.is_empty() {
+        mesh.normal_indices.extend([Mesh::FLAT; 2]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Flat at its height, its corners those given, with materials for all.
+    #[test]
+    fn lamps_hang_level() {
+        for (up, expected) in [(1, [[1.0, 9.0, 2.0], [3.0, 9.0, 4.0]]), (2, [[1.0, 2.0, 9.0], [3.0, 4.0, 9.0]])] {
+            let mut mesh = builtin("balls:0").expect("a name").expect("a size").mesh;
+            let triangles = mesh.triangles.len();
+            hang(&Lamp { up, height: 9.0, from: [1.0, 2.0], to: [3.0, 4.0] }, &mut mesh);
+            mesh.validate().expect("sound");
+            assert_eq!((mesh.triangles.len(), mesh.material(triangles - 1)), (triangles + 2, 0));
+            let [first, second] = [0, 1].map(|i| mesh.triangle(triangles + i));
+            assert_eq!([first[0], first[2]], expected);
+            assert_eq!([second[0], second[1]], expected);
+            assert_eq!((mesh.material(triangles), mesh.material(triangles + 1)), (1, 1));
+        }
+    }
+
+    /// Mirrors reflect no more than comes in, and nothing ends a path by being black.
+    #[test]
+    fn surfaces() {
+        for surface in [Surface::Specular, Surface::Glossy, Surface::Diffuse] {
+            let material = surface.material();
+            assert!(material.diffuse[0] > 0.0 && material.diffuse[0] + material.specular[0] <= 1.0);
+        }
+    }
+}

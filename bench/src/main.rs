@@ -1,0 +1,40 @@
+//! Measures what papers measured, and writes reports that mirror their tables and figures.
+//!
+//! ```text
+//! cargo run --release -p bench -- boulos
+//! ```
+
+mod boulos;
+mod console;
+mod machine;
+
+use clap::{Parser, Subcommand};
+use console::Console;
+use std::process::ExitCode;
+use tracer::Error;
+
+/// Measures what papers measured, and writes reports that mirror their tables and figures
+#[derive(Parser)]
+#[command(name = "bench", version, max_term_width = 110)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Boulos(boulos::Args),
+}
+
+fn main() -> ExitCode {
+    let Cli { command: Command::Boulos(args) } = Cli::parse();
+    let console = Console::new();
+    let Err(error) = boulos::run(&args, &console) else { return ExitCode::SUCCESS };
+    console.clear();
+    eprintln!("error: {error}");
+    match error {
+        Error::Usage(_) => ExitCode::from(2),
+        Error::Cancelled => ExitCode::from(130),
+        _ => ExitCode::FAILURE,
+    }
+}
