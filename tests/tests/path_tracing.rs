@@ -2,10 +2,11 @@
 //! says how much there is.
 
 use simd::Level;
+use std::sync::Arc;
 use std::time::Duration;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig};
 use tracer::method::{Auto, Context, Method, Order, Packet, Single, Width};
-use tracer::model::{Camera, Light, Material, Mesh, Model, Reflection, builtin};
+use tracer::model::{Camera, Light, Material, Mesh, Model, Reflection, Texture, builtin};
 use tracer::progress::Silent;
 use tracer::render::integrator::{self, Config, Crop, Film, Identity, Integrator, Means, Path, Query, Rendering};
 use tracer::render::{Frame, Scenery, Settings, Surfaces};
@@ -129,18 +130,97 @@ const ALL: [Integrator; 4] = [
 /// Hashes of the four pictures, the same on every machine.
 const HASHES: [u64; 4] = [0xfa49_87c7_12f9_4ad1, 0x7f62_a07e_2998_4dce, 0xa035_e1f2_f21d_1329, 0x71b1_bfe8_265e_e478];
 
+/// Hashes of the first and the third picture with textures.
+const TEXTURED: [u64; 2] = [0xbb8c_1fcf_c5b3_b20d, 0xdcb9_bdec_0fb4_c197];
+
 #[test]
 fn same_bits_by_every_means() {
-    let model = mixed();
+    let found = same_bits(&mixed(), &ALL);
+    assert_eq!(found, HASHES, "other pictures than before: {found:#018x?}");
+}
+
+/// Textures on walls, on a glossy and on a mirroring ball; the ceiling and a ball have none.
+fn textured() -> Model {
+    let mut model = mixed();
+    let mesh = &mut model.mesh;
+    mesh.uvs = mesh.positions.iter().map(|p| [1.7 * p[0] + p[2] + 0.2, 0.9 * p[1] - 2.0 * p[2]]).collect();
+    mesh.uv_indices = mesh.triangles.clone();
+    mesh.uv_indices[3] = Mesh::FLAT;
+    let image = |name: &str, width: usize, height: usize| {
+        let byte = |i: usize, k: usize| ((i + 1) * (37 + 50 * k) % 256) as u8;
+        let pixels: Vec<_> = (0..width * height).map(|i| [0, 1, 2].map(|k| byte(i, k))).collect();
+        Some(Arc::new(Texture::new(name, width, height, &pixels).expect("an image")))
+    };
+    let (large, small) = (image("large", 13, 7), image("small", 1, 2));
+    for (i, material) in model.materials.iter_mut().enumerate() {
+        if i != 5 && material.emission == [0.0; 3] && material.reflection != Reflection::Dielectric {
+            material.texture.clone_from(if i % 3 == 0 { &small } else { &large });
+            material.texture_on_specular = material.reflection == Reflection::Mirror;
+        }
+    }
+    model
+}
+
+#[test]
+fn same_bits_with_textures() {
+    let model = textured();
+    let found = same_bits(&model, &[ALL[0], ALL[2]]);
+    assert_eq!(found, TEXTURED, "other pictures than before: {found:#018x?}");
+
+    let bvh = Bvh::build(&model.mesh, &BuildConfig::default(), &Silent).expect("a tree");
+    let surfaces = Surfaces::new(&model);
+    let camera = model.camera_or_default();
+    let picture = |level, lanes| {
+        let settings = Settings { width: 37, height: 22, level, lanes, shadows: true };
+        let method = Packet::new(&bvh, level, Width::Auto);
+        let image = tracer::render::render(&model, &surfaces, camera, settings, &method, &mut Context::default());
+        image.expect("not cancelled").hash()
+    };
+    let expected = picture(Level::SCALAR, Width::One);
+    for level in Level::available() {
+        assert_eq!(picture(level, Width::Auto), expected, "{level}");
+    }
+    let plain = Model { materials: mixed().materials, ..model.clone() };
+    assert_ne!(render(&plain, &Config::new(37, 22)).image.hash(), render(&model, &Config::new(37, 22)).image.hash());
+}
+
+/// An image of one colour is that colour.
+#[test]
+fn an_image_of_one_colour() {
+    let of = |model: &Model| render(model, &Config { integrator: ALL[0], samples: 4, ..Config::new(30, 20) }).image;
+    let mut model = textured();
+    // Together with its diffuse colour no more than all light, which would be scaled down.
+    model.materials.iter_mut().filter(|m| m.texture_on_specular).for_each(|m| m.specular = [0.4; 3]);
+    let image = Arc::new(Texture::new("grey", 2, 2, &[[188; 3]; 4]).expect("an image"));
+    let grey = ((188.0 / 255.0 + 0.055) / 1.055_f64).powf(2.4) as f32;
+    let mut plain = model.clone();
+    model.mesh.uv_indices[3] = model.mesh.triangles[3];
+    for (textured, plain) in model.materials.iter_mut().zip(&mut plain.materials) {
+        if textured.texture.replace(image.clone()).is_some() {
+            plain.diffuse = plain.diffuse.map(|c| c * grey);
+            if plain.texture_on_specular {
+                plain.specular = plain.specular.map(|c| c * grey);
+            }
+        } else {
+            textured.texture = None;
+        }
+        plain.texture = None;
+    }
+    for (a, b) in of(&model).pixels.as_flattened().iter().zip(of(&plain).pixels.as_flattened()) {
+        assert!((a - b).abs() < 1e-4 * b.max(1e-2), "{a} {b}");
+    }
+}
+
+fn same_bits(model: &Model, integrators: &[Integrator]) -> Vec<u64> {
     model.validate().expect("sound");
     let bvh = Bvh::build(&model.mesh, &BuildConfig::default(), &Silent).expect("a tree");
     let config = CollapseConfig::default();
     let (four, eight) = (bvh.collapse::<4>(&config), bvh.collapse::<8>(&config));
-    let found = ALL.map(|integrator| {
+    let pictures = integrators.iter().map(|&integrator| {
         let usual = Config { integrator, samples: 2, seed: 3, ..Config::new(37, 22) };
-        let expected = render_by(&model, &usual, &Single::new(&four, Level::SCALAR)).image.hash();
+        let expected = render_by(model, &usual, &Single::new(&four, Level::SCALAR)).image.hash();
         let check = |what: &str, config: &Config, method: &dyn Method| {
-            let rendering = render_by(&model, config, method);
+            let rendering = render_by(model, config, method);
             let hash = rendering.image.hash();
             assert_eq!(hash, expected, "{integrator:?}, {what}: {hash:#018x}");
             assert!(rendering.image.pixels.as_flattened().iter().all(|c| c.is_finite() && *c >= 0.0));
@@ -170,7 +250,7 @@ fn same_bits_by_every_means() {
         }
         expected
     });
-    assert_eq!(found, HASHES, "other pictures than before: {found:#018x?}");
+    pictures.collect()
 }
 
 /// Interrupted again and again, kept in a file each time, with other batches: the bits of a picture made at once.

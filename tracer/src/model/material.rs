@@ -40,7 +40,7 @@ pub struct Material {
     pub transmission: [f32; 3],
     /// illum: which of these take part in secondary rays, and how.
     pub reflection: Reflection,
-    /// map_Kd: multiplies [`Material::diffuse`] where triangles have texture coordinates ([`Mesh::uv_indices`](super::Mesh::uv_indices)).
+    /// map_Kd: multiplies [`Material::diffuse`] and [`Material::ambient`] where triangles have texture coordinates ([`Mesh::uv_indices`](super::Mesh::uv_indices)).
     pub texture: Option<Arc<Texture>>,
     /// Whether it multiplies [`Material::specular`] too, as on metals.
     pub texture_on_specular: bool,

@@ -201,7 +201,7 @@ fn phong<F: Float>(job: &Job<'_>, point: &Points<F>, block: usize, chunk: usize)
 
     let material: F::Index = word(&job.surfaces.triangles, point.primitive, 4, 3, point.hit);
     let materials = &job.surfaces.materials;
-    let ambient = words3(materials, material, Surfaces::MATERIAL, 0, point.hit);
+    let mut ambient = words3(materials, material, Surfaces::MATERIAL, 0, point.hit);
     let mut diffuse = words3(materials, material, Surfaces::MATERIAL, 3, point.hit);
     let mut specular = words3(materials, material, Surfaces::MATERIAL, 6, point.hit);
     let shininess = word(materials, material, Surfaces::MATERIAL, 9, point.hit);
@@ -209,6 +209,7 @@ fn phong<F: Float>(job: &Job<'_>, point: &Points<F>, block: usize, chunk: usize)
     let textures = &job.surfaces.textures;
     if !textures.is_empty() {
         let tint = textures.tint(material, point.primitive, [point.u, point.v], point.hit);
+        ambient = ambient * tint;
         diffuse = diffuse * tint;
         specular = textures.specular(specular, tint, material, point.hit);
     }

@@ -211,8 +211,9 @@ mod tests {
         for u in [0.0, -0.0, 1e-45, -1e-30, 0.999_999_94, 1e9, -1e9, 3e38, -3e38, f32::INFINITY, f32::NAN] {
             for v in [0.3, u] {
                 let [r, ..] = tint(&t, 1, 0, u, v);
-                assert!(r == LINEAR[128] || r == 1.0 && !(u + v).is_finite() || (u + v).abs() > 1e38, "{u} {v}: {r}");
-                assert!(r.is_finite(), "{u} {v}: {r}");
+                // White where the place is no number.
+                let known = (u + v).is_finite() && u.abs() < 1e38;
+                assert!((r - LINEAR[128]).abs() < 1e-6 || r == 1.0 && !known, "{u} {v}: {r}");
             }
         }
     }

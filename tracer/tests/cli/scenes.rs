@@ -64,7 +64,7 @@ const LIT: &str = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"square.bin","
 "meshes":[{"name":"floor","primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]},
 {"name":"lamp","primitives":[{"attributes":{"POSITION":0},"indices":1,"material":1}]}],
 "cameras":[{"type":"perspective","perspective":{"yfov":0.6,"znear":0.1}}],
-"nodes":[{"mesh":0},{"mesh":1,"translation":[0,0,1],"scale":[0.3,0.3,1]},{"camera":0,"translation":[0.6,0.6,2]}],
+"nodes":[{"mesh":0},{"mesh":1,"translation":[0,0,1],"scale":[0.5,0.5,1]},{"camera":0,"translation":[0.6,0.6,2]}],
 "scenes":[{"nodes":[0,1,2]}],"scene":0}"#;
 
 fn lit() -> Folder {

@@ -60,11 +60,10 @@ fn one(m: &material::Material<'_>, images: &mut Images<'_>, notes: &mut Notes<'_
         ior,
     };
     if let Some(info) = pbr.metallic_roughness_texture() {
-        let instead = "its factors are used";
-        if let Some(image) = images.read(&info.texture(), &what, instead, notes) {
-            let [_, roughness, metallic] = image.mean(|byte| f32::from(byte) / 255.0);
-            given = Surface { metallic: given.metallic * metallic, roughness: given.roughness * roughness, ..given };
-        }
+        // Without it the factors say little: most are 1.
+        let image = images.read(&info.texture(), &what, "it is taken for no metal", notes);
+        let mean = image.map_or([0.0, 1.0, 0.0], |image| image.mean(|byte| f32::from(byte) / 255.0));
+        given = Surface { metallic: given.metallic * mean[2], roughness: given.roughness * mean[1], ..given };
     }
     if let Some(old) = m.pbr_specular_glossiness() {
         let [r, g, b, _] = old.diffuse_factor();

@@ -75,6 +75,9 @@ fn parse(text: &str, path: &Path, warnings: &mut Vec<String>) -> Result<Vec<Mate
     let mut materials: Vec<Material> = materials.into_iter().map(read).collect();
     let mut textures = Textures { library: path, known: HashMap::new(), texels: 0 };
     for map in maps {
+        if map.has_options() {
+            warnings.push(format!("{file}:{}: options of map_Kd are not supported: passed over", map.line));
+        }
         match textures.read(&map) {
             Ok(texture) => textures::put(&mut materials, &map, texture),
             Err(reason) => warnings.push(format!("{file}:{}: the texture {reason}: the colour Kd is used", map.line)),

@@ -396,11 +396,12 @@ fn textures() {
     assert_eq!((a.diffuse, b.diffuse), ([1.0; 3], [0.5; 3]), "where Kd is black the image stands for it");
     assert_eq!(a.texture.as_ref().map(|t| (t.name(), t.size())), Some(("maps\\a b.png", (2, 1))));
     assert!(std::sync::Arc::ptr_eq(a.texture.as_ref().expect("read"), b.texture.as_ref().expect("read")), "read once");
-    let [missing, no_image] = &warnings[..] else { panic!("{warnings:?}") };
+    let [missing, options, no_image] = &warnings[..] else { panic!("{warnings:?}") };
     assert!(
         missing.contains("a.mtl:4: the texture ")
             && missing.contains("none.png cannot be read (there is no such file): the colour Kd")
     );
+    assert!(options.contains("a.mtl:7: options of map_Kd"), "{options}");
     assert!(no_image.contains("a.mtl:12: ") && no_image.contains("only PNG and JPEG"), "{no_image}");
 
     let nan = obj.replace("vt 1 0", "vt 1 nan");

@@ -21,6 +21,11 @@ impl Map {
         Self { material, line, text: text.to_owned() }
     }
 
+    /// Whether there are options, which are passed over.
+    pub(super) fn has_options(&self) -> bool {
+        self.file().len() < self.text.len()
+    }
+
     /// The file's name, behind options that are passed over: `-s 1 1 1`, `-clamp on` ...
     fn file(&self) -> &str {
         let mut rest = self.text.as_str();

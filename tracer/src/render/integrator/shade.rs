@@ -207,8 +207,9 @@ impl Portion<'_> {
             columns.store(OFFSET, first, place.offset);
             columns.store(SIDE, first, place.side);
             let textures = &scenery.surfaces.textures;
+            let mut tint = Vec3::splat([1.0; 3]);
             if !textures.is_empty() {
-                let tint = place.tint(textures, &self.hits[block], chunk);
+                tint = place.tint(textures, &self.hits[block], chunk);
                 self.scratch.tint.store3(0, first, tint);
             }
 
@@ -218,7 +219,7 @@ impl Portion<'_> {
             let mut radiance = emission.scale(share_of_emission(&scenery.lights, emission, density, &place));
             if rules.whitted {
                 let ambient = words3::<F>(materials, place.material, Scenery::MATERIAL, 14, hit);
-                radiance = radiance + ambient.scale(F::splat(scenery.ambient));
+                radiance = radiance + (ambient * tint).scale(F::splat(scenery.ambient));
             }
             let around = match scenery.map {
                 Some(_) => self.scratch.next.load3(AROUND, first),
