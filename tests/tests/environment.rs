@@ -193,10 +193,10 @@ fn light_of_a_small_sun() {
             Up::Y => [right, theta.cos(), -forward],
             Up::Z => [right, forward, theta.cos()],
         };
-        for axis in 0..3 {
+        for (axis, cosine) in to_sun.into_iter().enumerate() {
             let model = wall(axis);
             let scenery = Scenery::in_environment(&model, map(&sun, up, degrees));
-            let irradiance = f64::from(radiance) * solid_angle * f64::max(0.0, to_sun[axis]);
+            let irradiance = f64::from(radiance) * solid_angle * f64::max(0.0, cosine);
             let expected = 0.6 / PI * irradiance;
             for integrator in [path(1, false), path(1, true), Integrator::Whitted { bounces: 1 }] {
                 let config = Config { integrator, samples: 64, ..Config::new(8, 8) };
