@@ -50,6 +50,10 @@ pub struct Args {
     /// level with 8 and 16]
     #[arg(long, value_name = "LEVEL:WIDTH", value_delimiter = ',')]
     levels: Vec<Setup>,
+    /// Cost of a box test for the builder, when a triangle test costs 1: the higher, the larger the leaves [default: 0.25, which makes
+    /// triangle tests as small a part as the paper's]
+    #[arg(long, value_name = "COST", default_value_t = Scene::BOX_COST, hide_default_value = true)]
+    box_cost: f32,
     /// Folder for what is written [default: bench/reports]
     #[arg(long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -62,6 +66,7 @@ struct Report {
     machine: Machine,
     size: usize,
     repeat: usize,
+    box_cost: f32,
     setups: Vec<Setup>,
     scenes: Vec<(Name, String)>,
     skipped: Vec<Name>,
@@ -100,12 +105,16 @@ fn measure(args: &Args, console: &Console) -> Result<Report, Error> {
     let size = args.size.map_or(if args.quick { 64 } else { 1024 }, usize::from);
     let repeat = args.repeat.map_or(if args.quick { 1 } else { 3 }, NonZeroUsize::get);
     let setups = if args.levels.is_empty() { Setup::usual() } else { args.levels.clone() };
+    if !(args.box_cost.is_finite() && args.box_cost >= 0.0) {
+        return Err(Error::Usage(format!("a box test that costs {}: give a number from 0 on", args.box_cost)));
+    }
     let task = Task { size, repeat, console };
     let mut report = Report {
         quick: args.quick,
         machine: Machine::now(),
         size,
         repeat,
+        box_cost: args.box_cost,
         setups,
         scenes: Vec::new(),
         skipped: Vec::new(),
@@ -115,7 +124,7 @@ fn measure(args: &Args, console: &Console) -> Result<Report, Error> {
         goals: Vec::new(),
     };
     for name in text::scenes(&args.scenes) {
-        match Scene::open(name, console)? {
+        match Scene::open(name, args.box_cost, console)? {
             Some(mut scene) => report.add(&mut scene, &task)?,
             None => report.skipped.push(name),
         }

@@ -5,7 +5,7 @@ use super::counts::{CountRow, WIDTHS};
 use super::frames::{Column, Frames, Whole};
 use super::goals::{Bound, Goal};
 use super::paper;
-use super::scenes::{Name, Surface};
+use super::scenes::{Name, Scene, Surface};
 use std::fmt::Write;
 use tracer::method::Width;
 
@@ -67,11 +67,18 @@ fn head(report: &Report) -> String {
          - columns: the paper's five, on one binary tree; `wide`: single rays through a tree of 8 children a node; `auto`: as many rays together \
          as agree, through the same. In brackets the speed-up over Single\n\
          - surfaces: all of one kind; glossy ones follow their coat's lobe alone, its exponent {} (the paper does not name its own)\n\
+         - tree: surface area heuristic over bins, a box test at {} of a triangle test{}\n\
          - paper: SSE on one core of a 3.0 GHz Clovertown; its traversals, scenes, cameras and renderer differ from these\n",
         machine.cpu,
         machine.threads,
         setups.join("; "),
-        Surface::SHININESS
+        Surface::SHININESS,
+        report.box_cost,
+        if report.box_cost == Scene::BOX_COST {
+            ": leaves as small as make triangle tests the paper's part (table 4)"
+        } else {
+            ""
+        }
     );
     for (name, what) in &report.scenes {
         let _ = writeln!(text, "- {name}: {what}");

@@ -8,7 +8,7 @@ use super::rays::{Planes, Sixteen};
 use crate::geometry::Vec3;
 use simd::Float;
 
-/// Bounds of the rays of a packet.
+/// Bounds of the rays of a packet, as they were when it was put together: of what was hit since they know nothing.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
     /// Smallest and largest start, on each axis.

@@ -35,7 +35,8 @@ pub enum Traversal {
     /// A packet together (Wald, Boulos and Shirley 2007): it goes on where its first active ray does, else an interval test tells whether all miss,
     /// else each ray is asked. In a leaf each is (section 3.1).
     Packet,
-    /// Algorithm 1: a packet whose rays are moved into a new one when fewer than the threshold of them are active.
+    /// Algorithm 1: a packet whose rays are moved into a new one when fewer than the threshold of them are active. As soon as the active ones fit one
+    /// vector they go on as in [`Traversal::Simd`], above the threshold too.
     #[default]
     Adaptive,
     /// The same at every box that some rays miss (section 3.4).
@@ -163,7 +164,7 @@ impl Method for Reordering<'_> {
     }
 
     fn source(&self) -> &'static str {
-        "Boulos, Wald & Benthin 2008"
+        "Boulos, Wald & Benthin 2008, section 4"
     }
 
     fn memory(&self) -> usize {
