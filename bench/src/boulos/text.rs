@@ -92,7 +92,9 @@ fn head(report: &Report) -> String {
         .filter(|f| !f.different.is_empty())
         .map(|f| format!("{}, {:?}, {}: {}", f.scene, f.surface, f.setup, f.different.join(", ")))
         .collect();
-    if different.is_empty() {
+    if report.frames.is_empty() {
+        text += "- nothing was measured\n";
+    } else if different.is_empty() {
         text += "- all methods found the same hits in every batch, bit for bit\n";
     } else {
         let _ = writeln!(text, "- **NOT THE SAME HITS** as Single: {}", different.join("; "));
