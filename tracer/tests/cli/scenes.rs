@@ -100,6 +100,23 @@ fn gltf_with_a_lamp_and_a_camera() {
     assert_eq!(folder.json("info lit.glb --json")["triangles"], 4);
 }
 
+/// A camera that looks straight down does not turn the map: y is up in files.
+#[test]
+fn gltf_cameras_do_not_say_what_is_up() {
+    let folder = lit();
+    let down = "{\"camera\":0,\"translation\":[0.6,2,0.6],\"rotation\":[-0.70710678,0,0,0.70710678]}";
+    folder.write("down.gltf", LIT.replacen("{\"camera\":0,\"translation\":[0.6,0.6,2]}", down, 1));
+    let rows = [32, 64, 96, 128].map(|red: u8| [[red, 64, 32, 129]; 6]);
+    let header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 6\n";
+    folder.write("sky.hdr", [&header[..], rows.as_flattened().as_flattened()].concat());
+    let hash = |options: &str| {
+        let command = "render down.gltf --size 8x8 --json --integrator path -o x.png --environment sky.hdr";
+        folder.json(&format!("{command} {options}"))["image_hash"].clone()
+    };
+    assert_eq!(hash(""), hash("--up y"));
+    assert_ne!(hash(""), hash("--up z"));
+}
+
 #[test]
 fn gltfs_that_are_not_sound() {
     let folder = lit();

@@ -1,13 +1,13 @@
 //! Environment maps from files: `tracer render --environment`.
 
 use crate::machine;
+use crate::workload::Workload;
 use image::ImageDecoder;
 use image::codecs::hdr::HdrDecoder;
 use std::fs::{self, File};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use tracer::Error;
-use tracer::model::Model;
 use tracer::render::{Environment, Image, Up};
 
 /// Light from all around.
@@ -39,10 +39,11 @@ impl EnvironmentOptions {
     }
 
     /// The map, as it lies in the scene.
-    pub fn open(&self, scene: &Model) -> Result<Option<Environment>, Error> {
+    pub fn open(&self, work: &Workload) -> Result<Option<Environment>, Error> {
         let Some(path) = &self.environment else { return Ok(None) };
-        // Scenes that say from where to look are the built-in ones, and say what is up.
-        let own = scene.camera.map(|camera| if camera.up[2].abs() > camera.up[1].abs() { Up::Z } else { Up::Y });
+        // Cameras of built-in scenes say what is up; those of files may look down.
+        let camera = work.scene.camera.filter(|_| work.built_in);
+        let own = camera.map(|camera| if camera.up[2].abs() > camera.up[1].abs() { Up::Z } else { Up::Y });
         let up = self.up.or(own).unwrap_or_default();
         let map = Environment::new(&read(path)?, up, self.environment_rotation.unwrap_or(0.0));
         map.map(Some).map_err(|e| data(path, e.to_string()))

@@ -240,7 +240,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let config = args.light.config(args)?;
     let scene = &work.scene;
     let camera = args.picture.camera.unwrap_or_else(|| scene.camera_or_default());
-    let scenery = match args.environment.open(scene)? {
+    let scenery = match args.environment.open(work)? {
         Some(map) => Scenery::in_environment(scene, map),
         None => Scenery::new(scene, &camera),
     };

@@ -15,6 +15,8 @@ pub struct Workload {
     pub scene: Model,
     pub surfaces: Surfaces,
     pub bvh: Bvh,
+    /// Whether it is none from a file.
+    pub built_in: bool,
     /// The builder's name.
     pub build: &'static str,
     pub load_ms: f64,
@@ -27,15 +29,14 @@ impl Workload {
         let (scene, load_ms) = open(spec, console)?;
         let (bvh, build_ms) = build(&scene.mesh, options, console)?;
         scene.validate()?;
-        let surfaces = Surfaces::new(&scene);
-        Ok(Self { scene, surfaces, bvh, build: options.name(), load_ms, build_ms })
+        let (surfaces, built_in) = (Surfaces::new(&scene), built_in(spec).is_some());
+        Ok(Self { scene, surfaces, bvh, built_in, build: options.name(), load_ms, build_ms })
     }
 }
 
 /// The scene that the user names, and the milliseconds it took; passes warnings on.
 pub fn open(spec: &str, console: &Console) -> Result<(Model, f64), Error> {
-    let (name, size) = spec.split_once(':').unwrap_or((spec, ""));
-    if let Some(which) = Builtin::ALL.into_iter().find(|b| b.name() == name) {
+    if let Some((which, size)) = built_in(spec) {
         check_size(which, size.parse().unwrap_or_else(|_| which.default_size()))?;
         console.stage("generate", 0);
     }
@@ -43,6 +44,12 @@ pub fn open(spec: &str, console: &Console) -> Result<(Model, f64), Error> {
     let (scene, warnings) = Model::open(spec, console)?;
     warnings.iter().for_each(|w| console.warn(w));
     Ok((scene, ms(start.elapsed())))
+}
+
+/// Which built-in scene the user names, and the size as text.
+fn built_in(spec: &str) -> Option<(Builtin, &str)> {
+    let (name, size) = spec.split_once(':').unwrap_or((spec, ""));
+    Builtin::ALL.into_iter().find(|b| b.name() == name).map(|which| (which, size))
 }
 
 /// Refuses a built-in scene that does not fit into memory.

@@ -95,7 +95,8 @@ fn check(root: &Root) -> Result<(), String> {
 /// Complains about extensions that are not supported, and forgets those that are required.
 fn without_extensions(mut root: Root, notes: &mut Notes<'_>) -> Result<Root, Error> {
     // Without these the scene is the same, but for its looks.
-    let of_looks = |name: &str| name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_");
+    let of_looks =
+        |name: &str| ["KHR_materials_", "KHR_texture_", "EXT_texture_"].iter().any(|start| name.starts_with(start));
     if let Some(name) = root.extensions_required.iter().find(|e| !SUPPORTED.contains(&e.as_str()) && !of_looks(e)) {
         let message =
             format!("the scene cannot be read without the extension {name}, which is not supported: export it without");

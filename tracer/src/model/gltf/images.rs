@@ -30,7 +30,11 @@ impl Images<'_> {
         instead: &str,
         notes: &mut Notes<'_>,
     ) -> Option<Arc<Texture>> {
-        let index = texture.source().index();
+        let Some(source) = texture.source() else {
+            notes.warn(&format!("{what}: its texture is neither PNG nor JPEG: {instead}"));
+            return None;
+        };
+        let index = source.index();
         let image = match self.known.get(&index) {
             Some(image) => image.clone(),
             None => {

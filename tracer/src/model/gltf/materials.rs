@@ -65,6 +65,10 @@ fn one(m: &material::Material<'_>, images: &mut Images<'_>, notes: &mut Notes<'_
         let mean = image.map_or([0.0, 1.0, 0.0], |image| image.mean(|byte| f32::from(byte) / 255.0));
         given = Surface { metallic: given.metallic * mean[2], roughness: given.roughness * mean[1], ..given };
     }
+    if let Some(info) = m.transmission().and_then(|t| t.transmission_texture()) {
+        let image = images.read(&info.texture(), &what, "it is taken for opaque", notes);
+        given.transmission *= image.map_or(0.0, |image| image.mean(|byte| f32::from(byte) / 255.0)[0]);
+    }
     if let Some(old) = m.pbr_specular_glossiness() {
         let [r, g, b, _] = old.diffuse_factor();
         given = Surface {
@@ -74,6 +78,11 @@ fn one(m: &material::Material<'_>, images: &mut Images<'_>, notes: &mut Notes<'_
             reflectance: old.specular_factor(),
             ..given
         };
+        if old.specular_glossiness_texture().is_some() {
+            // Without it the factors say little: most are 1.
+            given.roughness = 1.0;
+            notes.warn(&format!("{what}: textures of glossiness are not supported, it is matt"));
+        }
     }
     if m.unlit() {
         given = Surface { metallic: 0.0, roughness: 1.0, ..given };

@@ -6,7 +6,7 @@
 //! Vertices are numbered in the order in which triangles first use them.
 //!
 //! - Materials become [`Material`](super::Material)s: see the module `materials` for which becomes what. Textures of their base colour are
-//!   read (PNG and JPEG, inside or beside the file); of those of metalness, roughness and emission the mean is taken.
+//!   read (PNG and JPEG, inside or beside the file); of those of metalness, roughness, transmission and emission the mean is taken.
 //! - The first perspective camera of the scene is the model's.
 //! - Lights (`KHR_lights_punctual`) become [`Light`](super::Light)s, which shine equally bright on what is far and what is near: one that falls off shines
 //!   everywhere as it does in the middle of the scene.

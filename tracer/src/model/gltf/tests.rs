@@ -391,3 +391,28 @@ fn textures() {
     assert_eq!(warnings.len(), 3, "{warnings:#?}");
     assert!(warnings.iter().zip(words).all(|(warning, words)| warning.contains(words)), "{warnings:#?}");
 }
+
+/// A texture whose image is in another format only is passed over, and surfaces that it would say much about are plain.
+#[test]
+fn textures_without_an_image() {
+    let json = r#""extensionsRequired":["KHR_texture_basisu"],"extensionsUsed":["KHR_texture_basisu"],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":2,"material":0}]}],
+        "materials":[{"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.5,0.5,1],"metallicFactor":0,"baseColorTexture":{"index":0}}},
+        {"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{"KHR_materials_transmission":{"transmissionFactor":1,
+        "transmissionTexture":{"index":0}}}},
+        {"extensions":{"KHR_materials_pbrSpecularGlossiness":{"specularGlossinessTexture":{"index":0}}}}],
+        "textures":[{"extensions":{"KHR_texture_basisu":{"source":0}}}],"images":[{"uri":"a.ktx2"}],"nodes":[{"mesh":0}]"#;
+    let (model, warnings) = read_as("a.glb", &glb(&scene(json), &square())).expect("sound");
+    let [plain, opaque, matt, _] = &model.materials[..] else { panic!("{:?}", model.materials) };
+    assert!(plain.texture.is_none() && plain.diffuse == [0.5; 3], "{plain:?}");
+    assert_eq!((opaque.reflection, matt.reflection), (Reflection::Lambertian, Reflection::Lambertian));
+    for (warning, words) in warnings.iter().zip([
+        "the extension KHR_texture_basisu is not supported",
+        "material 0: its texture is neither PNG nor JPEG: its colour is used",
+        "material 1: its texture is neither PNG nor JPEG: it is taken for opaque",
+        "material 2: textures of glossiness are not supported",
+    ]) {
+        assert!(warning.contains(words), "{warnings:#?} lack {words:?}");
+    }
+    assert_eq!(warnings.len(), 4, "{warnings:#?}");
+}
