@@ -92,8 +92,19 @@ fn hash(model: &Model) -> u64 {
         words(uv_indices),
     ];
     for material in materials {
-        let Material { name: _, ambient, diffuse, specular, shininess, emission, ior, transmission, .. } = material;
-        let Material { reflection, texture, texture_on_specular, .. } = material;
+        let Material {
+            name: _,
+            ambient,
+            diffuse,
+            specular,
+            shininess,
+            emission,
+            ior,
+            transmission,
+            reflection,
+            texture,
+            texture_on_specular,
+        } = material;
         parts.push(floats(&[*ambient, *diffuse, *specular, *emission, *transmission, [*shininess, *ior, 0.0]]));
         parts.push(*reflection as u64);
         parts.push(u64::from(*texture_on_specular));
