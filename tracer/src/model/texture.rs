@@ -127,7 +127,8 @@ fn png(bytes: &[u8]) -> Result<image::RgbImage, String> {
     Ok(reader().decode().map_err(|e| e.to_string())?.into_rgb8())
 }
 
-/// Decoded without the intrinsics of any processor: the same bits on all of them.
+/// Decoded without the intrinsics of any processor, for the same bits on all of them: the features `x86` and `neon` of the decoder are off. (Its options do
+/// not switch them off: where another crate asks for these features, what is no sound JPEG may look different.)
 #[cfg(feature = "textures")]
 fn jpeg(bytes: &[u8]) -> Result<image::RgbImage, String> {
     use zune_core::bytestream::ZCursor;
@@ -135,7 +136,7 @@ fn jpeg(bytes: &[u8]) -> Result<image::RgbImage, String> {
     use zune_core::options::DecoderOptions;
     // As large as `image` allows.
     const MOST: usize = 16_384;
-    let options = DecoderOptions::default().set_use_unsafe(false).jpeg_set_out_colorspace(ColorSpace::RGB);
+    let options = DecoderOptions::default().jpeg_set_out_colorspace(ColorSpace::RGB);
     let options = options.set_max_width(MOST).set_max_height(MOST);
     let mut decoder = zune_jpeg::JpegDecoder::new_with_options(ZCursor::new(bytes), options);
     decoder.decode_headers().map_err(|e| e.to_string())?;
