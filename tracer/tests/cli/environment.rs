@@ -75,6 +75,8 @@ fn exposure() {
         folder.json(&format!("render s.obj --size 8x8 --integrator path --json -o x.png --environment {map}"))["image_hash"].clone()
     };
     assert_eq!(hash("doubled.hdr"), hash("half.exr"));
+    folder.write("rgbe.hdr", [&b"#?RGBE\n"[..], &text[11..]].concat());
+    assert_eq!(hash("rgbe.hdr"), hash("sky.hdr"), "another name of the format");
 }
 
 #[test]

@@ -97,7 +97,9 @@ fn check_size(path: &Path, width: usize, height: usize) -> Result<(), Error> {
 fn hdr(path: &Path, bytes: &[u8]) -> Result<Image, Error> {
     let fail =
         |e: image::ImageError| data(path, format!("not a Radiance picture that can be read ({e}): save it anew"));
-    let decoder = HdrDecoder::new(Cursor::new(bytes)).map_err(fail)?;
+    // Another name of the format, which some programs write.
+    let strict = !bytes.starts_with(b"#?RGBE");
+    let decoder = HdrDecoder::with_strictness(Cursor::new(bytes), strict).map_err(fail)?;
     let (width, height) = decoder.dimensions();
     let (width, height) = (width as usize, height as usize);
     check_size(path, width, height)?;
