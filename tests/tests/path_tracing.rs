@@ -329,6 +329,25 @@ fn crops_and_seeds() {
     assert_ne!(render(&model, &Config { seed: 1, ..config }).image.hash(), whole.hash());
 }
 
+/// Several rays of a pixel at once, and several lights: their light is added up in the same order, whichever rays of other pixels are around them.
+#[test]
+fn parts_of_glass() {
+    let mut model = mixed();
+    model.lights.push(Light { position: [-0.7, -0.8, 0.5], intensity: [0.2, 0.3, 0.1] });
+    for material in model.materials.iter_mut().filter(|m| m.name == "ball") {
+        material.reflection = Reflection::Dielectric;
+    }
+    let config = Config { integrator: Integrator::Whitted { bounces: 5 }, samples: 2, ..Config::new(90, 70) };
+    let whole = render(&model, &config).image;
+    let crop = Crop { x: 7, y: 11, width: 71, height: 53 };
+    for batch in [1 << 20, 1500, 37] {
+        let part = render(&model, &Config { crop: Some(crop), batch, ..config }).image;
+        for (y, row) in part.pixels.chunks(71).enumerate() {
+            assert_eq!(row, &whole.pixels[(y + 11) * 90 + 7..][..71], "row {y}, batches of {batch}");
+        }
+    }
+}
+
 /// A limit of time ends it after a whole sample.
 #[test]
 fn time_limit() {

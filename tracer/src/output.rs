@@ -42,6 +42,8 @@ pub(crate) fn stage(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Resul
     let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let temporary = temporary(folder).map_err(fail("create"))?;
     buffered(temporary.as_file(), write).map_err(fail("write"))?;
+    // Renamed before it is on the disk, it would be empty after a power cut, and the older file gone.
+    temporary.as_file().sync_data().map_err(fail("write"))?;
     Ok(Staged { path: target, temporary: Some(temporary) })
 }
 

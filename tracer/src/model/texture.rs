@@ -111,9 +111,8 @@ impl Texture {
 
 /// Refuses what announces more pixels than its bytes can stand for.
 #[cfg(feature = "textures")]
-fn check(width: usize, height: usize, bytes: &[u8]) -> Result<(), String> {
-    // Deflate packs 1032 bytes into one, each of eight pixels at most.
-    match width.saturating_mul(height) / 8192 <= bytes.len() {
+fn check(width: usize, height: usize, bytes: &[u8], pixels_per_byte: usize) -> Result<(), String> {
+    match width.saturating_mul(height) / pixels_per_byte <= bytes.len() {
         true => Ok(()),
         false => Err(format!("it says that it has {width}x{height} pixels: it is damaged or cut short")),
     }
@@ -123,11 +122,13 @@ fn check(width: usize, height: usize, bytes: &[u8]) -> Result<(), String> {
 fn png(bytes: &[u8]) -> Result<image::RgbImage, String> {
     let reader = || image::ImageReader::with_format(std::io::Cursor::new(bytes), image::ImageFormat::Png);
     let (width, height) = reader().into_dimensions().map_err(|e| e.to_string())?;
-    check(width as usize, height as usize, bytes)?;
+    // Deflate packs 1032 bytes into one, each of eight pixels at most.
+    check(width as usize, height as usize, bytes, 8192 + 64)?;
     Ok(reader().decode().map_err(|e| e.to_string())?.into_rgb8())
 }
 
-/// Decoded without the intrinsics of any processor: the same bits on all of them.
+/// Decoded without the intrinsics of any processor, for the same bits on all of them: the features `x86` and `neon` of the decoder are off. (Its options do
+/// not switch them off: where another crate asks for these features, what is no sound JPEG may look different.)
 #[cfg(feature = "textures")]
 fn jpeg(bytes: &[u8]) -> Result<image::RgbImage, String> {
     use zune_core::bytestream::ZCursor;
@@ -135,12 +136,13 @@ fn jpeg(bytes: &[u8]) -> Result<image::RgbImage, String> {
     use zune_core::options::DecoderOptions;
     // As large as `image` allows.
     const MOST: usize = 16_384;
-    let options = DecoderOptions::default().set_use_unsafe(false).jpeg_set_out_colorspace(ColorSpace::RGB);
+    let options = DecoderOptions::default().jpeg_set_out_colorspace(ColorSpace::RGB);
     let options = options.set_max_width(MOST).set_max_height(MOST);
     let mut decoder = zune_jpeg::JpegDecoder::new_with_options(ZCursor::new(bytes), options);
     decoder.decode_headers().map_err(|e| e.to_string())?;
     let (width, height) = decoder.dimensions().unwrap_or_default();
-    check(width, height, bytes)?;
+    // A block of 64 pixels takes a bit at least.
+    check(width, height, bytes, 512)?;
     let pixels = decoder.decode().map_err(|e| e.to_string())?;
     image::RgbImage::from_raw(width as u32, height as u32, pixels).ok_or_else(|| "it has no colours".into())
 }

@@ -75,6 +75,8 @@ fn exposure() {
         folder.json(&format!("render s.obj --size 8x8 --integrator path --json -o x.png --environment {map}"))["image_hash"].clone()
     };
     assert_eq!(hash("doubled.hdr"), hash("half.exr"));
+    folder.write("rgbe.hdr", [&b"#?RGBE\n"[..], &text[11..]].concat());
+    assert_eq!(hash("rgbe.hdr"), hash("sky.hdr"), "another name of the format");
 }
 
 #[test]
@@ -93,8 +95,15 @@ fn what_is_no_map() {
         let command = format!("render s.obj --integrator path --environment {name}");
         folder.fails(&command, 1, &[name, "pixel 2,3", "correct the map"]);
     }
+    // Says that it was packed in another way than it was.
+    let mut packed = folder.read("sky.exr");
+    let name = b"compression\0compression\0\x01\0\0\0";
+    let at = packed.windows(name.len()).position(|bytes| bytes == name).expect("an attribute") + name.len();
+    packed[at] = 8;
+    folder.write("lossy.exr", packed);
     for (name, code, words) in [
-        ("text.hdr", 1, &["not a Radiance picture"][..]),
+        ("lossy.exr", 1, &["dwaa compression", "save it with zip"][..]),
+        ("text.hdr", 1, &["not a Radiance picture"]),
         ("text.exr", 1, &["not an OpenEXR picture"]),
         ("short.hdr", 1, &["not a Radiance picture"]),
         ("short.exr", 1, &["not an OpenEXR picture"]),

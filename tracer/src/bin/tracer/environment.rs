@@ -97,7 +97,9 @@ fn check_size(path: &Path, width: usize, height: usize) -> Result<(), Error> {
 fn hdr(path: &Path, bytes: &[u8]) -> Result<Image, Error> {
     let fail =
         |e: image::ImageError| data(path, format!("not a Radiance picture that can be read ({e}): save it anew"));
-    let decoder = HdrDecoder::new(Cursor::new(bytes)).map_err(fail)?;
+    // Another name of the format, which some programs write.
+    let strict = !bytes.starts_with(b"#?RGBE");
+    let decoder = HdrDecoder::with_strictness(Cursor::new(bytes), strict).map_err(fail)?;
     let (width, height) = decoder.dimensions();
     let (width, height) = (width as usize, height as usize);
     check_size(path, width, height)?;
@@ -114,12 +116,18 @@ fn hdr(path: &Path, bytes: &[u8]) -> Result<Image, Error> {
 }
 
 fn exr(path: &Path, bytes: &[u8]) -> Result<Image, Error> {
+    use exr::compression::Compression;
     use exr::prelude::{MetaData, ReadChannels, ReadLayers, Vec2, read};
     let fail =
         |e: exr::error::Error| data(path, format!("not an OpenEXR picture that can be read ({e}): save it anew"));
     let about = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(fail)?;
     for header in &about.headers {
         check_size(path, header.layer_size.width(), header.layer_size.height())?;
+        if let Compression::DWAA(_) | Compression::DWAB(_) = header.compression {
+            let message =
+                format!("unpacking {} gives other bits on other processors: save it with zip", header.compression);
+            return Err(data(path, message));
+        }
     }
     let create =
         |Vec2(width, height): Vec2<usize>, _: &_| Image { width, height, pixels: vec![[0.0; 3]; width * height] };

@@ -4,14 +4,13 @@ use super::buffers::Buffers;
 use gltf::Accessor;
 use gltf::accessor::{DataType, Dimensions, sparse};
 use gltf::buffer::View;
-use std::collections::HashMap;
+use std::cmp::Ordering;
 
 /// The elements of an accessor, all of which are there.
 pub(super) struct Values<'a> {
     base: Option<Table<'a>>,
-    /// Places in the second table, of elements that differ from the first.
-    sparse: HashMap<usize, usize>,
-    others: Option<Table<'a>>,
+    /// Elements that differ from it.
+    sparse: Option<Sparse<'a>>,
     len: usize,
     data: DataType,
     normalized: bool,
@@ -41,6 +40,34 @@ impl<'a> Table<'a> {
     }
 }
 
+/// Which elements differ, in rising order, and how.
+struct Sparse<'a> {
+    indices: Table<'a>,
+    index_type: DataType,
+    values: Table<'a>,
+    len: usize,
+}
+
+impl<'a> Sparse<'a> {
+    fn index(&self, place: usize) -> usize {
+        whole(self.indices.element(place), self.index_type) as usize
+    }
+
+    /// Element `i`, if it is one of them: by halving, as many accessors may share them.
+    fn element(&self, i: usize) -> Option<&'a [u8]> {
+        let (mut first, mut end) = (0, self.len);
+        while first < end {
+            let middle = first.midpoint(end);
+            match self.index(middle).cmp(&i) {
+                Ordering::Equal => return Some(self.values.element(middle)),
+                Ordering::Less => first = middle + 1,
+                Ordering::Greater => end = middle,
+            }
+        }
+        None
+    }
+}
+
 impl<'a> Values<'a> {
     /// Those of an accessor that has `dimensions`.
     pub(super) fn new(buffers: &'a Buffers, accessor: &Accessor<'_>, dimensions: Dimensions) -> Result<Self, String> {
@@ -59,13 +86,11 @@ impl<'a> Values<'a> {
         if base.is_none() && len > buffers.len() {
             return Err(format!("it has {len} elements, but no bytes"));
         }
-        let mut values =
-            Self { base, sparse: HashMap::new(), others: None, len, data, normalized: accessor.normalized() };
-        if let Some(sparse) = accessor.sparse() {
-            values.others = Some(table(&sparse.values().view(), sparse.values().offset(), sparse.count())?);
-            values.sparse = places(buffers, &sparse, len)?;
-        }
-        Ok(values)
+        let sparse = accessor.sparse().map(|sparse| {
+            let values = table(&sparse.values().view(), sparse.values().offset(), sparse.count())?;
+            differing(buffers, &sparse, values, len)
+        });
+        Ok(Self { base, sparse: sparse.transpose()?, len, data, normalized: accessor.normalized() })
     }
 
     pub(super) fn len(&self) -> usize {
@@ -89,10 +114,8 @@ impl<'a> Values<'a> {
     }
 
     fn bytes(&self, i: usize) -> Option<&'a [u8]> {
-        match (self.sparse.get(&i), &self.others) {
-            (Some(&place), Some(others)) => Some(others.element(place)),
-            _ => self.base.as_ref().map(|base| base.element(i)),
-        }
+        let sparse = self.sparse.as_ref().and_then(|sparse| sparse.element(i));
+        sparse.or_else(|| self.base.as_ref().map(|base| base.element(i)))
     }
 
     /// Whole numbers of `n` bits that are normalized are divided by the largest one.
@@ -116,22 +139,28 @@ fn whole(bytes: &[u8], data: DataType) -> u32 {
     (0..n).fold(0, |sum, i| sum | u32::from(bytes[i]) << (8 * i))
 }
 
-/// Which elements are sparse, and their places among those.
-fn places(buffers: &Buffers, sparse: &sparse::Sparse<'_>, len: usize) -> Result<HashMap<usize, usize>, String> {
+/// The elements of an accessor of `len` that differ, with these values.
+fn differing<'a>(
+    buffers: &'a Buffers,
+    sparse: &sparse::Sparse<'_>,
+    values: Table<'a>,
+    len: usize,
+) -> Result<Sparse<'a>, String> {
     let indices = sparse.indices();
-    let data = match indices.index_type() {
+    let index_type = match indices.index_type() {
         sparse::IndexType::U8 => DataType::U8,
         sparse::IndexType::U16 => DataType::U16,
         sparse::IndexType::U32 => DataType::U32,
     };
-    let table = Table::new(buffers, &indices.view(), indices.offset(), sparse.count(), data.size())?;
-    let mut places = HashMap::new();
-    for place in 0..sparse.count() {
-        let index = whole(table.element(place), data) as usize;
-        if index >= len {
-            return Err(format!("sparse element {index} of {len}"));
+    let table = Table::new(buffers, &indices.view(), indices.offset(), sparse.count(), index_type.size())?;
+    let sparse = Sparse { indices: table, index_type, values, len: sparse.count() };
+    let mut least = 0;
+    for place in 0..sparse.len {
+        let index = sparse.index(place);
+        if !(least..len).contains(&index) {
+            return Err(format!("sparse element {index} of {len}: they have to be there, and in rising order"));
         }
-        places.insert(index, place);
+        least = index + 1;
     }
-    Ok(places)
+    Ok(sparse)
 }

@@ -69,6 +69,13 @@ fn glb(bytes: &[u8]) -> Result<Glb<'_>, String> {
 
 /// What the crate relies on without having checked it.
 fn check(root: &Root) -> Result<(), String> {
+    // They are copied for each primitive.
+    let short = |bound: &json::Value| {
+        bound.as_array().is_some_and(|list| list.len() <= 16 && list.iter().all(json::Value::is_number))
+    };
+    if let Some(i) = root.accessors.iter().position(|a| !a.min.iter().chain(&a.max).all(short)) {
+        return Err(format!("accessor {i}: its min and max have to be lists of up to 16 numbers, export it again"));
+    }
     for (i, mesh) in root.meshes.iter().enumerate() {
         for (k, primitive) in mesh.primitives.iter().enumerate() {
             let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));

@@ -103,8 +103,9 @@ impl<'a> Graph<'a> {
         notes: &mut Notes<'_>,
         progress: &dyn Progress,
     ) -> Result<Mesh, Error> {
-        let shapes: Vec<(&Affine, Shape<'_>)> = self.shapes(buffers, notes)?;
-        let total: usize = shapes.iter().map(|(_, shape)| shape.triangles()).fold(0, usize::saturating_add);
+        let meshes = self.meshes(document, buffers, notes)?;
+        let of = |node: &Node<'_>| node.mesh().and_then(|mesh| meshes[mesh.index()].as_ref());
+        let total = self.0.iter().filter_map(|(node, _)| of(node)).fold(0, |sum: usize, (n, _)| sum.saturating_add(*n));
         match total {
             0 => return Err(notes.error("the scene has no triangles: there is nothing to see")),
             n if n > Tree::MAX_TRIANGLES => {
@@ -116,10 +117,12 @@ impl<'a> Graph<'a> {
         progress.stage("parse", total as u64);
         let default = document.materials().len();
         let mut mesh = Mesh::default();
-        for (place, shape) in shapes {
-            shape.add_to(&mut mesh, place, default).map_err(|e| notes.error(e))?;
-            progress.advance(shape.triangles() as u64);
-            progress.check()?;
+        for (node, place) in &self.0 {
+            for shape in of(node).into_iter().flat_map(|(_, shapes)| shapes) {
+                shape.add_to(&mut mesh, place, default).map_err(|e| notes.error(e))?;
+                progress.advance(shape.triangles() as u64);
+                progress.check()?;
+            }
         }
         if mesh.normals.is_empty() {
             mesh.normal_indices.clear();
@@ -130,23 +133,30 @@ impl<'a> Graph<'a> {
         Ok(mesh)
     }
 
-    fn shapes<'b>(
-        &'b self,
+    /// Of each mesh that is shown: how many triangles it has, and what they are made of. (Many nodes may show the same.)
+    fn meshes<'b>(
+        &self,
+        document: &Document,
         buffers: &'b Buffers,
         notes: &mut Notes<'_>,
-    ) -> Result<Vec<(&'b Affine, Shape<'b>)>, Error> {
-        let mut shapes = Vec::new();
-        for (node, place) in &self.0 {
-            for primitive in node.mesh().iter().flat_map(|mesh| mesh.primitives()) {
-                let mesh = node.mesh().map_or(String::new(), |mesh| named("mesh", mesh.index(), mesh.name()));
-                let what = format!("{mesh}, primitive {}", primitive.index());
-                primitive::look(&primitive, &what, notes);
-                if let Some(shape) = Shape::new(&primitive, buffers, what).map_err(|e| notes.error(e))? {
-                    shapes.push((place, shape));
-                }
+    ) -> Result<Vec<Option<(usize, Vec<Shape<'b>>)>>, Error> {
+        let mut meshes: Vec<_> = document.meshes().map(|_| None).collect();
+        for mesh in self.0.iter().filter_map(|(node, _)| node.mesh()) {
+            if meshes[mesh.index()].is_some() {
+                continue;
             }
+            let name = named("mesh", mesh.index(), mesh.name());
+            let mut shapes = Vec::new();
+            for primitive in mesh.primitives() {
+                let what = format!("{name}, primitive {}", primitive.index());
+                primitive::look(&primitive, &what, notes);
+                let shape = Shape::new(&primitive, buffers, what).map_err(|e| notes.error(e))?;
+                shapes.extend(shape.filter(|shape| shape.triangles() > 0));
+            }
+            let triangles = shapes.iter().map(Shape::triangles).fold(0, usize::saturating_add);
+            meshes[mesh.index()] = Some((triangles, shapes));
         }
-        Ok(shapes)
+        Ok(meshes)
     }
 }
 

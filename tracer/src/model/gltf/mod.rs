@@ -80,10 +80,10 @@ impl<'a> Notes<'a> {
     }
 }
 
-/// What a thing of the file is called in messages.
+/// What a thing of the file is called in messages. (A name may be as long as the file.)
 fn named(kind: &str, index: usize, name: Option<&str>) -> String {
     match name {
-        Some(name) => format!("{kind} {index} {name:?}"),
+        Some(name) => format!("{kind} {index} {:?}", name.chars().take(60).collect::<String>()),
         None => format!("{kind} {index}"),
     }
 }

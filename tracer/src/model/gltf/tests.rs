@@ -255,6 +255,12 @@ fn faults() {
             "\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":2,\"componentType\":5121},\"values\":{\"bufferView\":1}},\"x\":0,",
             "sound",
         ),
+        (
+            "\"bufferView\":0,",
+            "\"sparse\":{\"count\":2,\"indices\":{\"bufferView\":2,\"byteOffset\":2,\"componentType\":5121},\"values\":{\"bufferView\":1}},\"x\":0,",
+            "accessor 0: sparse element 0 of 4: they have to be there, and in rising order",
+        ),
+        ("\"min\":[0,0,0]", "\"min\":[[0],0,0]", "accessor 0: its min and max"),
         ("\"mesh\":0", "\"mesh\":0,\"children\":[0]", "node 0 \"n\" has two parents or is its own descendant"),
         (
             "\"mesh\":0",

@@ -4,7 +4,7 @@ use super::textures::{self, Map, Textures};
 use super::tidy::Outline;
 use crate::Error;
 use crate::model::{Material, Reflection};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 use std::fs;
 use std::io;
@@ -15,6 +15,8 @@ use std::path::{Path, PathBuf};
 pub(super) fn read(obj: &Path, outline: &Outline, warnings: &mut Vec<String>) -> Result<Option<Vec<Material>>, Error> {
     let folder = obj.parent().unwrap_or(Path::new(""));
     let mut found = None;
+    // Some programs name it again for each object.
+    let mut known = HashSet::new();
     for (line, names) in &outline.libraries {
         // A name may have blanks in it, or there may be several: whichever is there.
         let whole = [names.as_str()];
@@ -22,6 +24,9 @@ pub(super) fn read(obj: &Path, outline: &Outline, warnings: &mut Vec<String>) ->
         let names = if locate(folder, names).is_some() || several.is_empty() { &whole[..] } else { &several };
         for name in names {
             let path = locate(folder, name).unwrap_or_else(|| folder.join(name));
+            if !known.insert(path.clone()) {
+                continue;
+            }
             match fs::read(&path) {
                 Ok(bytes) => {
                     found.get_or_insert_with(Vec::new).extend(parse(

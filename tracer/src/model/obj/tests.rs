@@ -404,6 +404,10 @@ fn textures() {
     assert!(options.contains("a.mtl:7: options of map_Kd"), "{options}");
     assert!(no_image.contains("a.mtl:12: ") && no_image.contains("only PNG and JPEG"), "{no_image}");
 
+    write("a.obj", &obj.replace("usemtl a\n", "mtllib a.mtl\nusemtl a\nmtllib none.mtl\nmtllib none.mtl\n"));
+    let (again, warnings) = read(&folder.path().join("a.obj"), &Silent).expect("sound");
+    assert_eq!((again.materials.len(), again.textures().len(), warnings.len()), (4, 1, 4), "each library once");
+
     let nan = obj.replace("vt 1 0", "vt 1 nan");
     write("a.obj", &nan);
     let error = read(&folder.path().join("a.obj"), &Silent).expect_err("no number").to_string();

@@ -92,8 +92,19 @@ fn hash(model: &Model) -> u64 {
         words(uv_indices),
     ];
     for material in materials {
-        let Material { name: _, ambient, diffuse, specular, shininess, emission, ior, transmission, .. } = material;
-        let Material { reflection, texture, texture_on_specular, .. } = material;
+        let Material {
+            name: _,
+            ambient,
+            diffuse,
+            specular,
+            shininess,
+            emission,
+            ior,
+            transmission,
+            reflection,
+            texture,
+            texture_on_specular,
+        } = material;
         parts.push(floats(&[*ambient, *diffuse, *specular, *emission, *transmission, [*shininess, *ior, 0.0]]));
         parts.push(*reflection as u64);
         parts.push(u64::from(*texture_on_specular));
@@ -126,9 +137,10 @@ impl Film {
     /// Reads what [`Film::save`] wrote, on any machine, to go on with this picture.
     ///
     /// # Errors
-    /// [`Error::Io`] when the file cannot be read, [`Error::Data`] when it is of another kind or version, damaged, or of another picture: then with
-    /// the field that differs.
+    /// [`Error::Usage`] for a configuration that makes no sense; [`Error::Io`] when the file cannot be read, [`Error::Data`] when it is of another kind or
+    /// version, damaged, or of another picture: then with the field that differs.
     pub fn load(path: &std::path::Path, of: &Identity, config: &Config) -> Result<Self, Error> {
+        config.validate()?;
         let bytes =
             std::fs::read(path).map_err(|source| Error::Io { action: "read", path: path.to_owned(), source })?;
         parse(&bytes, of, config).map_err(|message| Error::Data { path: path.to_owned(), line: None, message })

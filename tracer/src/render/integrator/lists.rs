@@ -2,6 +2,7 @@
 
 use crate::geometry::{RayBatch, Vec3};
 use simd::{Float, Mask, Vector};
+use std::ops::Range;
 
 /// Lists of equal length that grow by the lanes that are on.
 #[derive(Debug, Clone)]
@@ -51,15 +52,15 @@ impl<const N: usize> Lists<N> {
         self.len = 0;
     }
 
-    /// Appends those of another.
-    pub(super) fn append(&mut self, other: &Self) {
+    /// Appends some rows of another.
+    pub(super) fn append(&mut self, other: &Self, rows: Range<usize>) {
         for i in 0..N {
             self.floats[i].truncate(self.len);
-            self.floats[i].extend_from_slice(other.list(i));
+            self.floats[i].extend_from_slice(&other.list(i)[rows.clone()]);
         }
         self.slots.truncate(self.len);
-        self.slots.extend_from_slice(&other.slots[..other.len]);
-        self.len += other.len;
+        self.slots.extend_from_slice(&other.slots[rows.clone()]);
+        self.len += rows.len();
     }
 }
 

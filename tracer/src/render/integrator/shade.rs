@@ -49,7 +49,11 @@ pub(super) struct Shaded {
     /// Light that reaches the eye for certain.
     pub(super) light: Lists<3>,
     pub(super) shadows: Shadows,
+    /// How many of these rays there are up to the first light source that was asked, the second, and so on.
+    pub(super) sources: Vec<usize>,
     pub(super) paths: Paths,
+    /// The same for each branch.
+    pub(super) branches: Vec<usize>,
 }
 
 /// Columns between the steps.
@@ -489,7 +493,8 @@ fn throughput<F: Float>(lists: [&[f32]; 3], rows: Rows<F>) -> Vec3<F> {
 
 /// Shades a portion.
 pub(super) fn shade(level: Level, width: Width, mut portion: Portion<'_>) -> Shaded {
-    let mut shaded = Shaded { light: Lists::new(), shadows: Lists::new(), paths: Lists::new() };
+    let (sources, branches) = (Vec::new(), Vec::new());
+    let mut shaded = Shaded { light: Lists::new(), shadows: Lists::new(), sources, paths: Lists::new(), branches };
     let Wave { scenery, rules, .. } = *portion.wave;
     shaded.light.reserve(portion.len);
     if let Some(map) = &scenery.map {
@@ -506,12 +511,14 @@ pub(super) fn shade(level: Level, width: Width, mut portion: Portion<'_>) -> Sha
             lanes::run_long(level, width, SkySpots(&mut portion, map, scenery.lights.environment()));
         }
         lanes::run_long(level, width, ToLights(&mut portion, &mut shaded.shadows));
+        shaded.sources.push(shaded.shadows.len());
     }
     if let Some(map) = sky
         && (rules.whitted || any.is_none())
     {
         lanes::run_long(level, width, SkySpots(&mut portion, map, 1.0));
         lanes::run_long(level, width, ToLights(&mut portion, &mut shaded.shadows));
+        shaded.sources.push(shaded.shadows.len());
     }
     let branches: &[Branch] = match (rules.last, rules.whitted) {
         (true, _) => &[],
@@ -520,6 +527,7 @@ pub(super) fn shade(level: Level, width: Width, mut portion: Portion<'_>) -> Sha
     };
     for &branch in branches {
         lanes::run_long(level, width, Onwards(&mut portion, branch, &mut shaded.paths));
+        shaded.branches.push(shaded.paths.len());
     }
     shaded
 }

@@ -127,7 +127,7 @@ impl Waves<'_, '_, '_> {
             shadows.clear();
             for (light, more) in &shaded {
                 add(radiance, light);
-                shadows.append(more);
+                shadows.append(more, 0..more.len());
             }
         });
         self.count();
@@ -180,9 +180,9 @@ impl Waves<'_, '_, '_> {
             shadows.clear();
             for portion in &shaded {
                 add(radiance, &portion.light);
-                shadows.append(&portion.shadows);
-                paths.append(&portion.paths);
             }
+            append(shadows, &shaded, |portion| (&portion.shadows, &portion.sources));
+            append(paths, &shaded, |portion| (&portion.paths, &portion.branches));
             ends.clear();
             ends.resize(paths.len(), f32::INFINITY);
             fill(rays, paths, starts, ends);
@@ -247,6 +247,19 @@ fn rules(config: &Config) -> (u32, Rules) {
         }
         Integrator::Whitted { bounces } => (bounces, Rules { whitted: true, ..none }),
         Integrator::Eye { .. } | Integrator::AmbientOcclusion { .. } => (0, none),
+    }
+}
+
+/// Appends rays of all portions: those of the first step, then those of the second, and so on, each in the order of the rays that they come of. So the order
+/// of those of one slot, in which their light is added up, does not depend on where portions end.
+fn append(all: &mut Lists<10>, portions: &[Shaded], of: impl Fn(&Shaded) -> (&Lists<10>, &Vec<usize>)) {
+    let steps = portions.first().map_or(0, |portion| of(portion).1.len());
+    for step in 0..steps {
+        for portion in portions {
+            let (rays, ends) = of(portion);
+            let first = if step == 0 { 0 } else { ends[step - 1] };
+            all.append(rays, first..ends[step]);
+        }
     }
 }
 
