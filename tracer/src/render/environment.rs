@@ -344,7 +344,9 @@ mod tests {
             let point = [(i % 50) as f32 / 50.0, (i / 50) as f32 / 50.0];
             sun.seen::<f32>(sun.sample::<f32>(point, true).0, true).0.x > 50.0
         };
-        assert!((0..2500).filter(|&i| bright(i)).count() > 2200);
+        // The outer halves of its neighbours, an eighth each way, are chosen with it but are dark.
+        let count = (0..2500).filter(|&i| bright(i)).count();
+        assert!(count > 1700, "{count}");
     }
 
     #[test]
