@@ -133,13 +133,13 @@ impl<'a> Graph<'a> {
         Ok(mesh)
     }
 
-    /// Of each mesh that is shown: how many triangles it has, and what they are made of. (Many nodes may show the same.)
+    /// Of each mesh that is shown. (Many nodes may show the same.)
     fn meshes<'b>(
         &self,
         document: &Document,
         buffers: &'b Buffers,
         notes: &mut Notes<'_>,
-    ) -> Result<Vec<Option<(usize, Vec<Shape<'b>>)>>, Error> {
+    ) -> Result<Vec<Option<Shown<'b>>>, Error> {
         let mut meshes: Vec<_> = document.meshes().map(|_| None).collect();
         for mesh in self.0.iter().filter_map(|(node, _)| node.mesh()) {
             if meshes[mesh.index()].is_some() {
@@ -159,6 +159,9 @@ impl<'a> Graph<'a> {
         Ok(meshes)
     }
 }
+
+/// How many triangles a mesh has, and what they are made of.
+type Shown<'b> = (usize, Vec<Shape<'b>>);
 
 #[cfg(test)]
 mod tests {
