@@ -103,7 +103,7 @@ fn options_that_make_no_sense() {
         folder.fails(&format!("{command} --what"), 2, &["--what"]);
     }
     folder.fails("render s.obj --method best", 2, &["packet, ordered, single4"]);
-    folder.fails("render s.obj --method auto --width 4", 2, &["--method packet and ordered"]);
+    folder.fails("render s.obj --method auto --width 4", 2, &["--width is for --method packet, ordered"]);
     folder.fails("render s.obj --width 5", 2, &["unknown width '5'", "16"]);
     folder.fails("render s.obj -o out.jpg", 2, &["out.jpg", ".png or .exr"]);
     folder.fails("render s.obj --camera 0,0,0/0,0,0", 2, &["they must differ"]);

@@ -22,7 +22,7 @@ fn ply_is_obj() {
     folder.run("trace s.ply --rays rays.npy --hits ply.npy");
     folder.run("trace s.obj --rays rays.npy --hits obj.npy");
     assert!(folder.read("ply.npy") == folder.read("obj.npy"));
-    assert_eq!(folder.json("info s.ply --json")["triangles"], folder.json("info s.obj --json")["triangles"]);
+    assert_eq!(folder.json("info s.ply --json")["scene"]["triangles"], folder.json("info s.obj --json")["scene"]["triangles"]);
     assert!(folder.run("compare s.ply --size 8x8 --repeat 1").contains("same bits"));
     folder.run("render s.ply --size 8x8");
     assert!(folder.files().contains(&"s.png".into()));
@@ -97,7 +97,7 @@ fn gltf_with_a_lamp_and_a_camera() {
     let [r, g, b] = pixels.as_chunks::<3>().0[12 * 24 + 12];
     assert!(r > g && r > b, "the floor is red, under a blue sky: {r} {g} {b}");
     assert!(pixels.as_chunks::<3>().0.contains(&[255; 3]), "the lamp is white");
-    assert_eq!(folder.json("info lit.glb --json")["triangles"], 4);
+    assert_eq!(folder.json("info lit.glb --json")["scene"]["triangles"], 4);
 }
 
 /// A camera that looks straight down does not turn the map: y is up in files.
