@@ -22,7 +22,10 @@ fn ply_is_obj() {
     folder.run("trace s.ply --rays rays.npy --hits ply.npy");
     folder.run("trace s.obj --rays rays.npy --hits obj.npy");
     assert!(folder.read("ply.npy") == folder.read("obj.npy"));
-    assert_eq!(folder.json("info s.ply --json")["scene"]["triangles"], folder.json("info s.obj --json")["scene"]["triangles"]);
+    assert_eq!(
+        folder.json("info s.ply --json")["scene"]["triangles"],
+        folder.json("info s.obj --json")["scene"]["triangles"]
+    );
     assert!(folder.run("compare s.ply --size 8x8 --repeat 1").contains("same bits"));
     folder.run("render s.ply --size 8x8");
     assert!(folder.files().contains(&"s.png".into()));
