@@ -1,7 +1,7 @@
 //! Every way of finding hits, at every level, against the loop over all triangles: the same bits.
 
 use crate::brute_force;
-use simd::Level;
+use simd::{Isa, Level};
 use tracer::Scene;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
 use tracer::geometry::{Hit, HitBatch, RayBatch, Triangle};
@@ -89,12 +89,18 @@ fn check_reordering(bvh: &Bvh, level: Level, width: Width, same: &dyn Fn(&dyn Me
         same(&method(Traversal::Single), "");
         return;
     }
+    // Emulated levels have one lane at any width.
+    if matches!(level.isa(), Isa::Serial | Isa::Scalar) && width != Width::Eight {
+        return;
+    }
     for traversal in [Traversal::Simd, Traversal::Packet, Traversal::Adaptive, Traversal::Exact] {
         same(&method(traversal), &format!("{width}"));
     }
-    let often = method(Traversal::Adaptive).with_packet(80).with_threshold(0.9).with_interval_tests_from(0);
-    same(&often.clone().with_intervals(Intervals::Loose), &format!("{width} loose"));
-    same(&often.with_partition(Partition::InPlace), &format!("{width} in place"));
+    if width == Width::Eight {
+        let often = method(Traversal::Adaptive).with_packet(80).with_threshold(0.9).with_interval_tests_from(0);
+        same(&often.clone().with_intervals(Intervals::Loose), "8, loose");
+        same(&often.with_partition(Partition::InPlace), "8, in place");
+    }
 }
 
 /// Checks that watertight scenes over trees of two builders find the same, at all levels, in batches and ray by ray.
