@@ -47,7 +47,7 @@ pub struct Args {
     #[arg(long, value_name = "N")]
     repeat: Option<NonZeroUsize>,
     /// Levels and widths: the first for all, the others for the conference room's diffuse frames [default: sse4.2:4, and the CPU's best
-    /// level with 8 and 16]
+    /// level with 8 and 16]. Emulated levels (serial, scalar) are timed with one lane at any width
     #[arg(long, value_name = "LEVEL:WIDTH", value_delimiter = ',')]
     levels: Vec<Setup>,
     /// Cost of a box test for the builder, when a triangle test costs 1: the higher, the larger the leaves [default: 0.25, which makes

@@ -100,7 +100,8 @@ pub struct Reordering<'a> {
 
 impl<'a> Reordering<'a> {
     /// Over a tree, at a level, with vectors of `width` rays (of which [`Traversal::Single`] makes no use), and the paper's values of all
-    /// else.
+    /// else. At the emulated levels (serial and scalar) vectors have one lane whatever the width, but where work is counted: counters are those
+    /// of the width at any level, times are not.
     #[must_use]
     pub fn new(bvh: &'a Bvh, level: Level, width: Width, traversal: Traversal) -> Self {
         Self {
