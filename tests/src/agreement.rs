@@ -6,8 +6,8 @@ use tracer::Scene;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
 use tracer::geometry::{Hit, HitBatch, RayBatch, Triangle};
 use tracer::method::{
-    Auto, BitVec, Context, Intervals, Limits, Method, Packet, Partition, Reordering, SharedOrigin, Single, SlabForm,
-    Traversal, Width,
+    Auto, BitVec, Context, DivideConquer, DivideLimits, Filtering, Intervals, Limits, Method, Packet, Partition,
+    Reordering, SharedOrigin, Single, SlabForm, Traversal, TriangleBoxes, Width,
 };
 use tracer::model::Mesh;
 use tracer::progress::Silent;
@@ -20,6 +20,7 @@ pub struct Trees {
     four: WideBvh<4>,
     eight: WideBvh<8>,
     sixteen: WideBvh<16>,
+    boxes: TriangleBoxes,
 }
 
 impl Trees {
@@ -42,7 +43,8 @@ impl Trees {
         let binary = Bvh::build(mesh, config, &Silent).expect("a valid mesh");
         let config = CollapseConfig::default();
         let (four, eight, sixteen) = (binary.collapse(&config), binary.collapse(&config), binary.collapse(&config));
-        Self { name, binary, four, eight, sixteen }
+        let boxes = TriangleBoxes::new(mesh).expect("a valid mesh");
+        Self { name, binary, four, eight, sixteen, boxes }
     }
 }
 
@@ -79,6 +81,10 @@ pub fn check(what: &str, trees: &Trees, levels: &[Level], rays: &RayBatch, expec
             let loose = packet.with_form(SlabForm::Conservative).with_shared_origin(SharedOrigin::Never);
             same(&loose, &format!("{width} conservative"));
             check_reordering(&trees.binary, level, width, &same);
+            let divide = DivideConquer::new(&trees.boxes, level, width);
+            same(&divide, &format!("{width}"));
+            let limits = DivideLimits { few_rays: 0, few_triangles: 1, ..DivideLimits::default() };
+            same(&divide.with_limits(limits).with_filtering(Filtering::Places), &format!("{width}, by places"));
         }
     }
 }

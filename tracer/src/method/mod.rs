@@ -2,6 +2,7 @@
 
 mod auto;
 pub(crate) mod chosen;
+mod divide_conquer;
 pub(crate) mod nearest;
 mod packet;
 pub(crate) mod query;
@@ -14,6 +15,7 @@ mod watertight;
 
 pub use crate::lanes::Width;
 pub use auto::{Auto, Limits};
+pub use divide_conquer::{DivideConquer, DivideLimits, Filtering, Phases, Sharing, TriangleBoxes};
 pub use packet::{Order, Packet, SharedOrigin, SlabForm};
 pub use reordering::{Intervals, Partition, Reordering, Traversal};
 pub use single::Single;

@@ -4,7 +4,9 @@ use clap::ValueEnum;
 use simd::Level;
 use tracer::Error;
 use tracer::bvh::{Bvh, CollapseConfig, WideBvh};
-use tracer::method::{Auto, Method, Order, Packet, Reordering, Single, SlabForm, Traversal, Width};
+use tracer::method::{
+    Auto, DivideConquer, Method, Order, Packet, Reordering, Single, SlabForm, Traversal, TriangleBoxes, Width,
+};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum MethodChoice {
@@ -28,6 +30,8 @@ pub enum MethodChoice {
     BoulosAdaptive,
     /// The same wherever one is not
     BoulosExact,
+    /// No tree: triangles are divided while all rays are traced, the method of the paper of 2012. (A tree is built all the same, and not used)
+    DivideConquer,
     /// As many rays together as agree: the fastest for any rays, but its tree takes a quarter longer to build
     Auto,
 }
@@ -38,12 +42,20 @@ pub enum Tree {
     Four(WideBvh<4>),
     Eight(WideBvh<8>),
     Sixteen(WideBvh<16>),
+    /// None: the triangles alone.
+    Boxes(TriangleBoxes),
 }
 
 impl MethodChoice {
     /// Whether the number of rays in a packet can be chosen.
     pub fn has_packets(self) -> bool {
-        matches!(self, Self::Packet | Self::Ordered) || (self.traversal().is_some() && self != Self::BoulosSingle)
+        matches!(self, Self::Packet | Self::Ordered | Self::DivideConquer)
+            || (self.is_reordering() && self != Self::BoulosSingle)
+    }
+
+    /// Whether it is one of those of the paper of 2008.
+    pub fn is_reordering(self) -> bool {
+        self.traversal().is_some()
     }
 
     fn traversal(self) -> Option<Traversal> {
@@ -61,7 +73,8 @@ impl MethodChoice {
     /// If options that are for packets alone were given for another method.
     pub fn check(self, width: Width, form: SlabForm) -> Result<(), Error> {
         if !self.has_packets() && width != Width::Auto {
-            let message = "--width is for --method packet, ordered and boulos-simd to boulos-exact: leave it out";
+            let message =
+                "--width is for --method packet, ordered, boulos-simd to boulos-exact and divide-conquer: leave it out";
             return Err(Error::Usage(message.into()));
         }
         if !matches!(self, Self::Packet | Self::Ordered) && form != SlabForm::Exact {
@@ -81,6 +94,7 @@ impl MethodChoice {
             Self::Single4 => Tree::Four(bvh.collapse(&config)),
             Self::Single8 | Self::Auto => Tree::Eight(bvh.collapse(&config)),
             Self::Single16 => Tree::Sixteen(bvh.collapse(&config)),
+            Self::DivideConquer => Tree::Boxes(TriangleBoxes::of_triangles(&bvh.triangles)),
             _ => Tree::Binary,
         }
     }
@@ -105,6 +119,7 @@ impl MethodChoice {
             Tree::Eight(tree) if self == Self::Auto => Box::new(Auto::new(tree, level)),
             Tree::Eight(tree) => Box::new(Single::new(tree, level)),
             Tree::Sixteen(tree) => Box::new(Single::new(tree, level)),
+            Tree::Boxes(triangles) => Box::new(DivideConquer::new(triangles, level, width)),
         }
     }
 }

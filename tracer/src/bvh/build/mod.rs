@@ -24,7 +24,7 @@ mod boxes;
 pub mod insertion;
 pub mod linear;
 mod part;
-mod primitive;
+pub(crate) mod primitive;
 pub mod reinsertion;
 mod sah;
 mod sweep;

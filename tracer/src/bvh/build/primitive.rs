@@ -11,45 +11,50 @@ use simd::{Halves, Simd, Vector};
 /// nothing to a box, but are always normal numbers (denormals are slow).
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
-pub(super) struct Box8(pub(super) [f32; 8]);
+pub(crate) struct Box8(pub(crate) [f32; 8]);
 
 impl Box8 {
-    pub(super) const EMPTY: Self = Self([f32::INFINITY; 8]);
+    pub(crate) const EMPTY: Self = Self([f32::INFINITY; 8]);
 
     /// With a number for lanes 3 and 7.
-    pub(super) fn new(b: &Aabb, tag: f32) -> Self {
+    pub(crate) fn new(b: &Aabb, tag: f32) -> Self {
         Self([b.min[0], b.min[1], b.min[2], tag, -b.max[0], -b.max[1], -b.max[2], tag])
     }
 
     #[inline(always)]
-    pub(super) fn load<S: Simd>(&self) -> S::Float8 {
+    pub(crate) fn load<S: Simd>(&self) -> S::Float8 {
         S::Float8::load(&self.0)
     }
 
     #[inline(always)]
-    pub(super) fn store<S: Simd>(&mut self, b: S::Float8) {
+    pub(crate) fn store<S: Simd>(&mut self, b: S::Float8) {
         b.store(&mut self.0);
     }
 
     #[inline(always)]
-    pub(super) fn union(&self, b: &Self) -> Self {
+    pub(crate) fn union(&self, b: &Self) -> Self {
         Self(zip(self.0, &b.0, min))
+    }
+
+    /// Whether it holds nothing.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0[0] == f32::INFINITY
     }
 
     /// Length along an axis.
     #[inline(always)]
-    pub(super) fn extent(&self, axis: usize) -> f32 {
+    pub(crate) fn extent(&self, axis: usize) -> f32 {
         -self.0[4 + axis] - self.0[axis]
     }
 
     /// As [`Aabb::half_area`], but infinite for an empty box.
     #[inline(always)]
-    pub(super) fn half_area(&self) -> f32 {
+    pub(crate) fn half_area(&self) -> f32 {
         let (x, y, z) = (self.extent(0), self.extent(1), self.extent(2));
         x * y + y * z + z * x
     }
 
-    pub(super) fn aabb(&self) -> Aabb {
+    pub(crate) fn aabb(&self) -> Aabb {
         let [x, y, z, _, to_x, to_y, to_z, _] = self.0;
         Aabb { min: [x, y, z], max: [-to_x, -to_y, -to_z] }
     }
@@ -84,6 +89,16 @@ impl Primitive {
         let b = self.0.load::<S>();
         b.low() - b.high()
     }
+}
+
+/// Twice the middle of a box, as a box.
+pub(crate) fn centers_of(b: &Box8) -> Box8 {
+    let mut centers = *b;
+    for axis in 0..3 {
+        let center = b.0[axis] - b.0[4 + axis];
+        (centers.0[axis], centers.0[4 + axis]) = (center, -center);
+    }
+    centers
 }
 
 /// The box around all.

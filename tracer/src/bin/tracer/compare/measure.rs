@@ -92,10 +92,14 @@ fn cases(method: MethodChoice) -> Vec<Case> {
     let serial = Level::new(Isa::Serial).map(|l| (l, Width::Four));
     let plain = [(Level::SCALAR, Width::One), (Level::SCALAR, Width::Four)];
     let serial = serial.into_iter().chain(plain).map(|(level, width)| Case::new(MethodChoice::Packet, level, width));
-    let widths: &[Width] =
-        if method.has_packets() { &[Width::Four, Width::Eight, Width::Sixteen] } else { &[Width::Auto] };
     let mut cases: Vec<Case> = serial.collect();
     for level in Level::available() {
+        let widths: &[Width] = match method {
+            _ if !method.has_packets() => &[Width::Auto],
+            // Emulated, these have one lane at any width.
+            _ if method.is_reordering() && matches!(level.isa(), Isa::Serial | Isa::Scalar) => &[Width::One],
+            _ => &[Width::Four, Width::Eight, Width::Sixteen],
+        };
         for &width in widths {
             let case = Case::new(method, level, width);
             if cases.iter().all(|other| other.name != case.name) {
@@ -115,6 +119,7 @@ impl Case {
             (MethodChoice::Packet, Isa::Serial) => format!("emulated float{n}"),
             (MethodChoice::Packet, Isa::Scalar) => format!("float{n} as LLVM likes"),
             (MethodChoice::Packet, _) => format!("{upper} float{n}"),
+            _ if method.has_packets() && n == 1 => format!("{upper} {}, one lane", method.name()),
             _ if method.has_packets() => format!("{upper} {}, float{n}", method.name()),
             _ => format!("{upper} {}", method.name()),
         };
@@ -127,7 +132,7 @@ impl Task<'_> {
     fn frame(&self, case: &Case, now: &dyn Fn() -> Duration) -> Result<Sample, Error> {
         let mut cx = Context { counters: None, cancel: Some(self.console.cancel()) };
         // The rows in emulation need no other tree.
-        let tree = if case.method.has_packets() { &Tree::Binary } else { &self.tree };
+        let tree = if case.method == MethodChoice::Packet { &Tree::Binary } else { &self.tree };
         let method = case.method.over(&self.work.bvh, tree, case.level, case.width, SlabForm::Exact);
         let mut frame = Frame::new(&self.work.scene, &self.work.surfaces, self.camera, self.settings(case));
         let start = now();
