@@ -1,7 +1,7 @@
 //! Triangles to the two sides of a plane (section 3.2): through the middle of their boxes' centers, or where the surface area heuristic says.
 
 use crate::bvh::build::primitive::Box8;
-use simd::{Float, Halves, Simd, Vector, kernel};
+use simd::{Halves, Simd, Vector, kernel};
 
 /// Some of the triangles: a range of ids, with what is known of their boxes.
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +16,7 @@ pub(super) struct Range {
 
 impl Range {
     /// The same in a slice of its own ids.
-    pub(super) fn from_zero(self) -> Self {
+    pub(super) fn alone(self) -> Self {
         Self { first: 0, end: self.len(), ..self }
     }
 

@@ -50,7 +50,7 @@ impl Lanes for Load<'_> {
                 F::store_rows8([o.x, o.y, o.z, ray.t_max, d.x, d.y, d.z, F::from_bits(numbers)], &mut self.rows[at..]);
                 least = least.min(ray.t_min);
                 most = most.max(F::select(ray.valid, ray.t_min, most));
-                numbers = numbers + F::Index::splat(F::LANES as u32);
+                numbers += F::Index::splat(F::LANES as u32);
             }
         }
         [least.reduce_min(), most.reduce_max()]

@@ -108,8 +108,8 @@ impl Shared<'_> {
         let is_left_near = near.first == left.first;
         let (of_near, of_far) = if is_left_near { (of_left, of_right) } else { (of_right, of_left) };
         let (a, b) = rayon::join(
-            || self.task(of_near, near.from_zero(), rows, false),
-            || self.task(of_far, far.from_zero(), rows, true),
+            || self.task(of_near, near.alone(), rows, false),
+            || self.task(of_far, far.alone(), rows, true),
         );
         Some(a + b)
     }

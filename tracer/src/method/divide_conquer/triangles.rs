@@ -110,7 +110,7 @@ impl TriangleBoxes {
 fn pack(triangle: &Triangle) -> (Box8, Complement) {
     let mut b = Box8([0.0; 8]);
     let (mut middle, mut code) = ([0.0; 3], 0);
-    for axis in 0..3 {
+    for (axis, middle) in middle.iter_mut().enumerate() {
         let v0 = triangle.v0[axis];
         let numbers = [v0, v0 + triangle.e1[axis], v0 + triangle.e2[axis]];
         // Bits and all: of zeros the negative one is the smaller here.
@@ -120,7 +120,7 @@ fn pack(triangle: &Triangle) -> (Box8, Complement) {
         for (k, x) in numbers.into_iter().enumerate() {
             sorted[(ORDERS[order as usize & 7][k] & 3) as usize] = x;
         }
-        (b.0[axis], middle[axis], b.0[4 + axis]) = (sorted[0], sorted[1], -sorted[2]);
+        (b.0[axis], *middle, b.0[4 + axis]) = (sorted[0], sorted[1], -sorted[2]);
         code |= order << (3 * axis);
         for (k, edge) in [triangle.e1[axis], triangle.e2[axis]].into_iter().enumerate() {
             let steps = place(edge) - place(numbers[k + 1] - v0);
