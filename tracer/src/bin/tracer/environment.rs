@@ -123,6 +123,11 @@ fn exr(path: &Path, bytes: &[u8]) -> Result<Image, Error> {
     let about = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(fail)?;
     for header in &about.headers {
         check_size(path, header.layer_size.width(), header.layer_size.height())?;
+        let whole = header.shared_attributes.display_window;
+        if header.layer_size != whole.size || header.own_attributes.layer_position != whole.position {
+            let message = "holds a part of the picture (its data window is not its display window): save the whole";
+            return Err(data(path, message.into()));
+        }
         if let Compression::DWAA(_) | Compression::DWAB(_) = header.compression {
             let message =
                 format!("unpacking {} gives other bits on other processors: save it with zip", header.compression);

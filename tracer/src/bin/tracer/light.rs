@@ -134,6 +134,12 @@ impl LightOptions {
             }
         }
         args.checkpoint.check()?;
+        let files = [("--output", &args.output), ("--cost", &self.cost), ("--checkpoint", &args.checkpoint.checkpoint)];
+        for (i, (name, file)) in files.iter().enumerate() {
+            if let Some((other, _)) = files[..i].iter().find(|(_, other)| file.is_some() && file == other) {
+                return Err(Error::Usage(format!("{other} and {name} name one file: give each its own")));
+            }
+        }
         args.environment.check()?;
         if let Some(cost) = &self.cost
             && Kind::of(cost)? != Kind::Png
