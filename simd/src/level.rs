@@ -225,11 +225,11 @@ impl Level {
         LEVEL.get_or_init(Self::from_env).clone()
     }
 
-    /// Runs `kernel` in plain Rust, as [`Level::SCALAR`] does, and compiles it for nothing else: for work whose speed does not
-    /// matter.
-    #[inline]
-    pub fn run_scalar<K: Kernel>(kernel: K) -> K::Output {
-        backend::scalar::run(kernel)
+    /// Runs `kernel` with the instructions that the whole program is compiled for ([`native`](crate::native)), and compiles it for nothing
+    /// else: for work whose speed does not matter much.
+    #[inline(never)]
+    pub fn run_native<K: Kernel>(kernel: K) -> K::Output {
+        kernel.run::<crate::native::Native>()
     }
 
     /// Which instruction set it is.

@@ -122,9 +122,9 @@ impl<J: Lanes> Kernel for Native<J> {
     }
 }
 
-/// [`run`] in plain Rust, compiled for no other level.
-pub(crate) fn run_scalar<J: Lanes>(lanes: usize, job: J) -> J::Output {
-    if lanes == 1 { job.run::<f32>() } else { Level::run_scalar(AtWidth { lanes, job }) }
+/// [`run`] with the instructions that the whole program is compiled for, and no others: for work whose speed does not matter much.
+pub(crate) fn run_once<J: Lanes>(lanes: usize, job: J) -> J::Output {
+    if lanes == 1 { job.run::<f32>() } else { Level::run_native(AtWidth { lanes, job }) }
 }
 
 struct AtWidth<J> {
@@ -139,8 +139,47 @@ impl<J: Lanes> Kernel for AtWidth<J> {
     fn run<S: Simd>(self) -> J::Output {
         match self.lanes {
             4 => self.job.run::<S::Float4>(),
+            _ if is_serial::<S>() => Level::SCALAR.run(self),
             8 => self.job.run::<S::Float8>(),
             _ => self.job.run::<S::Float16>(),
+        }
+    }
+}
+
+/// Level serial is there to be compared with float4: eight and sixteen fenced lanes would be a quarter of all machine code, and run as at level scalar.
+pub(crate) const fn is_serial<S: Simd>() -> bool {
+    matches!(S::LEVEL.isa(), Isa::Serial)
+}
+
+/// Work that is generic over the vector type, and wants the level's others beside it.
+pub(crate) trait SimdLanes {
+    type Output;
+
+    /// With vectors of type `F`. Mark it `#[inline(always)]`.
+    fn run<S: Simd, F: Float>(self) -> Self::Output;
+}
+
+/// Runs `job` at a level with vectors of `lanes` lanes: 1 (plain `f32`), 4, 8 or 16.
+pub(crate) fn run_simd<J: SimdLanes>(level: Level, lanes: usize, job: J) -> J::Output {
+    level.run(SimdAtWidth { lanes, job })
+}
+
+struct SimdAtWidth<J> {
+    lanes: usize,
+    job: J,
+}
+
+impl<J: SimdLanes> Kernel for SimdAtWidth<J> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> J::Output {
+        match self.lanes {
+            1 => self.job.run::<S, f32>(),
+            4 => self.job.run::<S, S::Float4>(),
+            _ if is_serial::<S>() => Level::SCALAR.run(self),
+            8 => self.job.run::<S, S::Float8>(),
+            _ => self.job.run::<S, S::Float16>(),
         }
     }
 }

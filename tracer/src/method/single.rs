@@ -54,7 +54,7 @@ where
             let bvh = self.bvh;
             if count {
                 // The work is the same at every level.
-                Level::run_scalar(Trace::<Q, _, N> { bvh, rays, results, count: Counters::default() })
+                Level::run_native(Trace::<Q, _, N> { bvh, rays, results, count: Counters::default() })
             } else {
                 self.level.run(Trace::<Q, _, N> { bvh, rays, results, count: NoCount })
             }

@@ -91,7 +91,7 @@ impl<'a, const N: usize> Walk<'a, N> {
     where
         Arity<N>: Wide,
     {
-        Level::run_scalar(Odd::<Q, C, N> { walk: self, stack, found, count });
+        Level::run_native(Odd::<Q, C, N> { walk: self, stack, found, count });
     }
 
     /// [`Walk::run`] of a leaf.

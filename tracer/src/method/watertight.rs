@@ -70,7 +70,7 @@ impl<'a> Watertight<'a> {
         in_portions(PORTION, rays, results, cx, |count, rays, results| {
             if count {
                 // The work is the same at every level.
-                Level::run_scalar(Trace::<Q, _> { method: *self, rays, results, count: Counters::default() })
+                Level::run_native(Trace::<Q, _> { method: *self, rays, results, count: Counters::default() })
             } else {
                 self.level.run(Trace::<Q, _> { method: *self, rays, results, count: NoCount })
             }

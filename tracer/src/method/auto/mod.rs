@@ -9,6 +9,7 @@ use super::{BitVec, Context, Method, PORTION, in_portions};
 use crate::Error;
 use crate::bvh::WideBvh;
 use crate::geometry::{HitBatch, RayBatch, RayBlock};
+use crate::lanes::is_serial;
 use crate::stats::{Count, Counters, NoCount};
 use simd::{Kernel, Level, Simd};
 use tile::{BLOCKS, Tile};
@@ -70,7 +71,7 @@ impl<'a> Auto<'a> {
             let Self { bvh, limits, .. } = *self;
             if count {
                 // The work is the same at every level.
-                Level::run_scalar(Trace::<Q, _> { bvh, limits, row, rays, results, count: Counters::default() })
+                Level::run_native(Trace::<Q, _> { bvh, limits, row, rays, results, count: Counters::default() })
             } else {
                 self.level.run(Trace::<Q, _> { bvh, limits, row, rays, results, count: NoCount })
             }
@@ -116,6 +117,9 @@ impl<Q: Query, C: Count> Kernel for Trace<'_, Q, C> {
 
     #[inline(always)]
     fn run<S: Simd>(mut self) -> Counters {
+        if is_serial::<S>() {
+            return Level::SCALAR.run(self);
+        }
         let mut tile = Tile::<Q>::new(self.bvh, self.limits);
         let tiles = self.row.map_or(self.rays.len().div_ceil(BLOCKS), |row| row.div_ceil(16));
         if self.row.is_some() {

@@ -1,38 +1,25 @@
 //! Which rays meet a box (section 3.1), and bringing those to the front.
 
 use super::rays::{Active, BUFFER, Row, T_MAX, bits, id, load, meets};
-use simd::{Float, Kernel, Mask, Simd, Vector};
+use crate::lanes::SimdLanes;
+use simd::{Float, Mask, Simd, Vector};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Moves the rays among the first `len` that meet the box to the front, and returns their number.
 pub(super) struct Filter<'a, A> {
     pub(super) rays: &'a mut A,
     pub(super) len: usize,
-    /// How many are tested at a time.
-    pub(super) lanes: usize,
     /// `min x y z _ max x y z _`.
     pub(super) planes: [f32; 8],
     /// No ray starts before.
     pub(super) from: f32,
 }
 
-impl<A: Active> Kernel for Filter<'_, A> {
+impl<A: Active> SimdLanes for Filter<'_, A> {
     type Output = usize;
 
     #[inline(always)]
-    fn run<S: Simd>(self) -> usize {
-        match self.lanes {
-            1 => self.run_by::<S, f32>(),
-            4 => self.run_by::<S, S::Float4>(),
-            8 => self.run_by::<S, S::Float8>(),
-            _ => self.run_by::<S, S::Float16>(),
-        }
-    }
-}
-
-impl<A: Active> Filter<'_, A> {
-    #[inline(always)]
-    fn run_by<S: Simd, F: Float>(self) -> usize {
+    fn run<S: Simd, F: Float>(self) -> usize {
         let Self { rays, len, planes, from, .. } = self;
         let mut buffer = BUFFER;
         let (mut at, mut active) = (0, 0);
@@ -62,30 +49,17 @@ pub(super) struct Copy<'a> {
     pub(super) to: &'a mut [Row],
     /// Where rays end by now, by number, as bits; empty where that is known.
     pub(super) ends: &'a [AtomicU32],
-    pub(super) lanes: usize,
     /// `min x y z _ max x y z _`.
     pub(super) planes: [f32; 8],
     /// No ray starts before.
     pub(super) from: f32,
 }
 
-impl Kernel for Copy<'_> {
+impl SimdLanes for Copy<'_> {
     type Output = usize;
 
     #[inline(always)]
-    fn run<S: Simd>(self) -> usize {
-        match self.lanes {
-            1 => self.run_by::<S, f32>(),
-            4 => self.run_by::<S, S::Float4>(),
-            8 => self.run_by::<S, S::Float8>(),
-            _ => self.run_by::<S, S::Float16>(),
-        }
-    }
-}
-
-impl Copy<'_> {
-    #[inline(always)]
-    fn run_by<S: Simd, F: Float>(self) -> usize {
+    fn run<S: Simd, F: Float>(self) -> usize {
         let Self { rows, to, ends, planes, from, .. } = self;
         let (mut at, mut active) = (0, 0);
         while at < rows.len() {
@@ -112,7 +86,6 @@ impl Copy<'_> {
 pub(super) struct Sample<'a, A> {
     pub(super) rays: &'a A,
     pub(super) len: usize,
-    pub(super) lanes: usize,
     /// `min x y z _ max x y z _`.
     pub(super) planes: [f32; 8],
     /// No ray starts before.
@@ -131,23 +104,11 @@ impl<A: Active> Sample<'_, A> {
     }
 }
 
-impl<A: Active> Kernel for Sample<'_, A> {
+impl<A: Active> SimdLanes for Sample<'_, A> {
     type Output = f32;
 
     #[inline(always)]
-    fn run<S: Simd>(self) -> f32 {
-        match self.lanes {
-            1 => self.run_by::<f32>(),
-            4 => self.run_by::<S::Float4>(),
-            8 => self.run_by::<S::Float8>(),
-            _ => self.run_by::<S::Float16>(),
-        }
-    }
-}
-
-impl<A: Active> Sample<'_, A> {
-    #[inline(always)]
-    fn run_by<F: Float>(self) -> f32 {
+    fn run<S: Simd, F: Float>(self) -> f32 {
         let Self { rays, len, planes, from, .. } = self;
         let mut buffer = BUFFER;
         let (chunks, mut met) = (Self::SIZE / F::LANES, 0);

@@ -7,6 +7,7 @@ use super::rays::{NONE, Row, T_MAX, id, set_id};
 use super::room::{Room, Rooms};
 use super::traverse::{Done, Query, in_order};
 use crate::geometry::Hit;
+use crate::lanes;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -83,7 +84,7 @@ impl Shared<'_> {
                 room.rows.resize(active + part.len(), NONE);
             }
             let to = &mut room.rows[active..active + part.len()];
-            active += level.run(Copy { rows: part, to, ends, lanes, planes, from });
+            active += lanes::run_simd(level, lanes, Copy { rows: part, to, ends, planes, from });
         }
         let mut done = Done::default();
         done.counters.box_tests += rays.len().div_ceil(lanes) as u64;

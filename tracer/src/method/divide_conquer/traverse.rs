@@ -127,12 +127,14 @@ impl Traversal<'_> {
         let planes = range.planes();
         let Query { level, width: lanes, from, limits, .. } = self.query;
         let sampled = len >= Sample::<A>::LEAST && range.len() > 4 * limits.few_triangles && limits.filter_below < 1.0;
-        let active = if sampled && level.run(Sample { rays: &*rays, len, lanes, planes, from }) > limits.filter_below {
+        let active = if sampled
+            && lanes::run_simd(level, lanes, Sample { rays: &*rays, len, planes, from }) > limits.filter_below
+        {
             self.done.counters.box_tests += Sample::<A>::tests(lanes);
             len
         } else {
             self.done.counters.box_tests += len.div_ceil(lanes) as u64;
-            level.run(Filter { rays, len, lanes, planes, from })
+            lanes::run_simd(level, lanes, Filter { rays, len, planes, from })
         };
         self.stop(start, |phases, time| phases.filter += time);
         active

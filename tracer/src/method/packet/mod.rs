@@ -109,7 +109,7 @@ impl<'a> Packet<'a> {
             if count {
                 // The work is the same at every level.
                 let count = Counters::default();
-                lanes::run_scalar(width, Trace::<Q, _> { bvh, form, order, origin, rays, results, count })
+                lanes::run_once(width, Trace::<Q, _> { bvh, form, order, origin, rays, results, count })
             } else {
                 let count = NoCount;
                 lanes::run(level, width, Trace::<Q, _> { bvh, form, order, origin, rays, results, count })

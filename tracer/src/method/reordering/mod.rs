@@ -216,9 +216,9 @@ impl Reordering<'_> {
             let trace = Trace::<_, WAY> { method: self, rays, results, tally };
             match width {
                 1 => plain(trace),
-                4 => Level::run_scalar(Four(trace)),
-                8 => Level::run_scalar(Eight(trace)),
-                _ => Level::run_scalar(Sixteen(trace)),
+                4 => Level::run_native(Four(trace)),
+                8 => Level::run_native(Eight(trace)),
+                _ => Level::run_native(Sixteen(trace)),
             }
         } else {
             let trace = Trace::<_, WAY> { method: self, rays, results, tally: Off };
