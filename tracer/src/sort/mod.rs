@@ -2,7 +2,15 @@
 //!
 //! Everything here is the same, bit for bit, at every level and on any number of threads of the current rayon pool.
 
+mod chunks;
+mod order;
 mod output;
+mod radix;
 mod scan;
+#[cfg(test)]
+mod test;
 
+pub use chunks::Chunks;
+pub use order::RaySort;
+pub use radix::RadixSort;
 pub use scan::{compact, exclusive_scan, head_flags, segmented_scan};
