@@ -58,6 +58,12 @@ impl RaySorter {
         &self.order
     }
 
+    /// How many runs of rays were sorted: see [`RaySort::runs`].
+    #[must_use]
+    pub fn runs(&self) -> usize {
+        self.sort.runs()
+    }
+
     /// The rays in the order that was found last, which must have been theirs.
     ///
     /// # Panics
