@@ -4,13 +4,14 @@ use crate::brute_force;
 use simd::{Isa, Level};
 use tracer::Scene;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
-use tracer::geometry::{Hit, HitBatch, RayBatch, Triangle};
+use tracer::geometry::{Aabb, Hit, HitBatch, RayBatch, Triangle};
 use tracer::method::{
     Auto, BitVec, Context, DivideConquer, DivideLimits, Filtering, Intervals, Limits, Method, Packet, Partition,
-    Reordering, SharedOrigin, Single, SlabForm, Traversal, TriangleBoxes, Width,
+    Reordering, SharedOrigin, Single, SlabForm, Sorted, Traversal, TriangleBoxes, Width,
 };
 use tracer::model::Mesh;
 use tracer::progress::Silent;
+use tracer::sort::Reorder;
 
 /// The trees that methods need over a mesh.
 #[derive(Debug)]
@@ -75,6 +76,10 @@ pub fn check(what: &str, trees: &Trees, levels: &[Level], rays: &RayBatch, expec
         same(&Single::<16>::new(&trees.sixteen, level), "16");
         same(&Auto::new(&trees.eight, level), "");
         same(&Auto::new(&trees.eight, level).with_limits(early), "that keeps rays together");
+        let bounds = trees.binary.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds());
+        same(&Sorted::new(Single::new(&trees.eight, level), level, &bounds, Reorder::Hash), "by hash");
+        let packet = Packet::new(&trees.binary, level, Width::Auto);
+        same(&Sorted::new(packet, level, &bounds, Reorder::Direction), "by direction");
         for width in [Width::One, Width::Four, Width::Eight, Width::Sixteen] {
             let packet = Packet::new(&trees.binary, level, width);
             same(&packet.with_shared_origin(SharedOrigin::Always), &format!("{width}"));

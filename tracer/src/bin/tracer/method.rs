@@ -4,13 +4,16 @@ use clap::ValueEnum;
 use simd::Level;
 use tracer::Error;
 use tracer::bvh::{Bvh, CollapseConfig, WideBvh};
+use tracer::geometry::Aabb;
 use tracer::method::{
-    Auto, DivideConquer, Method, Order, Packet, Reordering, Single, SlabForm, Traversal, TriangleBoxes, Width,
+    Auto, DivideConquer, Method, Order, Packet, Reordering, Single, SlabForm, Sorted, Traversal, TriangleBoxes, Width,
 };
+use tracer::sort::Reorder;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum MethodChoice {
     /// Packets through the skip-pointer tree, as in the paper of 2003
+    #[default]
     Packet,
     /// The same, near child first
     Ordered,
@@ -122,4 +125,13 @@ impl MethodChoice {
             Tree::Boxes(triangles) => Box::new(DivideConquer::new(triangles, level, width)),
         }
     }
+}
+
+/// The same with rays put into order before it.
+pub fn reordered<'a>(method: Box<dyn Method + 'a>, bvh: &Bvh, level: Level, by: Reorder) -> Box<dyn Method + 'a> {
+    if by == Reorder::None {
+        return method;
+    }
+    let bounds = bvh.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds());
+    Box::new(Sorted::new(method, level, &bounds, by))
 }
