@@ -48,6 +48,7 @@
 //! - [`geometry`]: boxes, triangles, rays and hits, and how they meet.
 //! - [`bvh`]: the tree and its builders.
 //! - [`method`]: ways of finding hits, behind one interface.
+//! - [`sort`]: scans and sorting, by which methods put rays into order.
 //! - [`Scene`]: a tree and a method, ready to be asked: all that most programs need.
 //! - [`World`]: scenes at many places, and surfaces that are no triangles.
 //! - [`render`]: pictures, in three passes; with secondary rays, [`render::integrator`].
@@ -70,6 +71,7 @@ pub mod progress;
 pub mod render;
 mod scene;
 mod sealed;
+pub mod sort;
 pub mod stats;
 mod world;
 
