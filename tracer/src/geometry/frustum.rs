@@ -96,10 +96,14 @@ pub(crate) struct Frustum {
     /// The interval along the dominant axis; empty if `from > to`.
     from: f32,
     to: f32,
-    /// On the next two axes: the lower and the upper side of the rectangle at `from`.
+    /// Where the first rectangle lies.
+    base: f32,
+    /// On the next two axes: its lower and upper sides.
     sides: [[f32; 2]; 2],
     /// How much the sides move along the axis: the positive and the negative part, of which one is zero.
     slopes: [[[f32; 2]; 2]; 2],
+    /// What it was widened by.
+    slack: f32,
 }
 
 /// How much rectangles are widened, in units of `S`: `128 u`.
@@ -109,43 +113,79 @@ impl Frustum {
     /// Around some rays of these blocks, of which there is one at least. Their directions are on the whole negative on the axes that `signs` has a bit for.
     #[inline(always)]
     pub(crate) fn around<F: Float>(blocks: &[RayBlock], members: Members, signs: u32, space: &Space) -> Self {
-        let axis = members.axis;
-        let (infinity, mut most) = (F::splat(f32::INFINITY), F::splat(0.0));
-        let (mut low, mut high) = (infinity, -infinity);
+        let mut extent = Extent::<F>::new();
         for block in blocks {
             for chunk in 0..16 / F::LANES {
                 let ray = Packet::<F>::load(block, chunk);
-                let on = members.of(&ray, space.largest);
-                let (org, dir) = (turn(ray.org, axis)[0], turn(ray.dir, axis)[0]);
-                let (start, end) = (org + dir * ray.t_min, org + dir * ray.t_max);
-                low = F::select(on, low.min(start.min(end)), low);
-                high = F::select(on, high.max(start.max(end)), high);
-                most = F::select(on, most.max(scale(&ray, space.largest)), most);
+                extent.add(&ray, members.of(&ray, space.largest), members.axis, space);
             }
         }
-        let slack = most.reduce_max() * SLACK;
-        let from = (low.reduce_min() - slack).max(space.bounds.min[axis] - slack);
-        let mut to = (high.reduce_max() + slack).min(space.bounds.max[axis] + slack);
-        let mut this = Self { members, signs, from, to, sides: [[0.0; 2]; 2], slopes: [[[0.0; 2]; 2]; 2] };
-        if from > to {
-            return this;
-        }
-        if to - from < 2.0 * slack {
-            to = from + 2.0 * slack;
-            this.to = to;
-        }
-        let ends = rectangles::<F>(blocks, members, space, [from, to]);
-        let length = to - from;
-        for (k, [at_from, at_to]) in ends.into_iter().enumerate() {
-            let first = [at_from[0] - slack, at_from[1] + slack];
-            let last = [at_to[0] - slack, at_to[1] + slack];
-            this.sides[k] = first;
-            for side in 0..2 {
-                let slope = (last[side] - first[side]) / length;
-                this.slopes[k][side] = [slope.max(0.0), slope.min(0.0)];
+        let mut this = Self::between(&extent, members, signs, space);
+        if this.from <= this.to {
+            let mut rectangles = Rectangles::<F>::new([this.from, this.to]);
+            for block in blocks {
+                for chunk in 0..16 / F::LANES {
+                    let ray = Packet::<F>::load(block, chunk);
+                    rectangles.add(&ray, members.of(&ray, space.largest), members.axis);
+                }
             }
+            this.join(&rectangles);
         }
         this
+    }
+
+    /// Around the rays in the lanes of `on`, members of this frustum.
+    #[inline(always)]
+    pub(crate) fn part<F: Float>(&self, ray: &Packet<F>, on: F::Mask, space: &Space) -> Self {
+        let axis = self.members.axis;
+        let mut extent = Extent::<F>::new();
+        extent.add(ray, on, axis, space);
+        let mut this = Self::between(&extent, self.members, self.signs, space);
+        let mut rectangles = Rectangles::<F>::new([this.from, this.to]);
+        rectangles.add(ray, on, axis);
+        this.join(&rectangles);
+        this
+    }
+
+    /// The interval of a frustum that has no sides yet.
+    #[inline(always)]
+    fn between<F: Float>(extent: &Extent<F>, members: Members, signs: u32, space: &Space) -> Self {
+        let slack = extent.scale.reduce_max() * SLACK;
+        let from = (extent.low.reduce_min() - slack).max(space.bounds.min[members.axis] - slack);
+        let mut to = (extent.high.reduce_max() + slack).min(space.bounds.max[members.axis] + slack);
+        if from <= to && to - from < 2.0 * slack {
+            to = from + 2.0 * slack;
+        }
+        let (sides, slopes) = ([[0.0; 2]; 2], [[[0.0; 2]; 2]; 2]);
+        Self { members, signs, from, to, base: from, sides, slopes, slack }
+    }
+
+    /// Sides from one rectangle to the other.
+    #[inline(always)]
+    fn join<F: Float>(&mut self, rectangles: &Rectangles<F>) {
+        let inverse = 1.0 / (self.to - self.from);
+        for k in 0..2 {
+            for side in 0..2 {
+                let [first, last] = [rectangles.side(k, 0, side, self.slack), rectangles.side(k, 1, side, self.slack)];
+                let slope = (last - first) * inverse;
+                self.sides[k][side] = first;
+                self.slopes[k][side] = [slope.max(0.0), slope.min(0.0)];
+            }
+        }
+    }
+
+    /// Leaves out what lies behind the reach of all rays in the lanes of `on`, for which it was made.
+    #[inline(always)]
+    pub(crate) fn shorten<F: Float>(&mut self, ray: &Packet<F>, on: F::Mask, reach: F) {
+        let end = turn(ray.org, self.members.axis)[0] + turn(ray.dir, self.members.axis)[0] * reach;
+        let infinity = F::splat(f32::INFINITY);
+        if self.members.negative {
+            let end = F::select(on, end, infinity).reduce_min() - self.slack;
+            self.from = self.from.max(end);
+        } else {
+            let end = F::select(on, end, -infinity).reduce_max() + self.slack;
+            self.to = self.to.min(end);
+        }
     }
 
     /// Which boxes may be met by a ray of the packet.
@@ -153,9 +193,9 @@ impl Frustum {
     pub(crate) fn meets<F: Float>(&self, low: Vec3<F>, high: Vec3<F>) -> F::Mask {
         let ([low, low_b, low_c], [high, high_b, high_c]) =
             (turn(low, self.members.axis), turn(high, self.members.axis));
-        let from = F::splat(self.from);
-        let (near, far) = (low.max(from), high.min(F::splat(self.to)));
-        let (p, q) = (near - from, far - from);
+        let base = F::splat(self.base);
+        let (near, far) = (low.max(F::splat(self.from)), high.min(F::splat(self.to)));
+        let (p, q) = (near - base, far - base);
         near.le(far) & self.overlaps(0, [low_b, high_b], [p, q]) & self.overlaps(1, [low_c, high_c], [p, q])
     }
 
@@ -169,35 +209,67 @@ impl Frustum {
     }
 }
 
-/// For both of the other axes, at both ends: the smallest and the largest coordinate of the rays.
-#[inline(always)]
-fn rectangles<F: Float>(blocks: &[RayBlock], members: Members, space: &Space, ends: [f32; 2]) -> [[[f32; 2]; 2]; 2] {
-    let infinity = F::splat(f32::INFINITY);
-    let mut ranges = [[[infinity, -infinity]; 2]; 2];
-    for block in blocks {
-        for chunk in 0..16 / F::LANES {
-            let ray = Packet::<F>::load(block, chunk);
-            let on = members.of(&ray, space.largest);
-            let ([org, org_b, org_c], [dir, dir_b, dir_c]) = (turn(ray.org, members.axis), turn(ray.dir, members.axis));
-            let inv = F::splat(1.0) / dir;
-            let slopes = [dir_b * inv, dir_c * inv];
-            for (end, plane) in ends.into_iter().enumerate() {
-                let way = F::splat(plane) - org;
-                for (k, org) in [org_b, org_c].into_iter().enumerate() {
-                    let at = org + way * slopes[k];
-                    let [low, high] = ranges[k][end];
-                    ranges[k][end] = [F::select(on, low.min(at), low), F::select(on, high.max(at), high)];
-                }
+/// How far rays reach along an axis, and `S` of the [proof](self).
+struct Extent<F: Float> {
+    low: F,
+    high: F,
+    scale: F,
+}
+
+impl<F: Float> Extent<F> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { low: F::splat(f32::INFINITY), high: F::splat(f32::NEG_INFINITY), scale: F::splat(0.0) }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, ray: &Packet<F>, on: F::Mask, axis: usize, space: &Space) {
+        let (org, dir) = (turn(ray.org, axis)[0], turn(ray.dir, axis)[0]);
+        let (start, end) = (org + dir * ray.t_min, org + dir * ray.t_max);
+        self.low = F::select(on, start.min(end).min(self.low), self.low);
+        self.high = F::select(on, start.max(end).max(self.high), self.high);
+        self.scale = F::select(on, scale(ray, space.largest).max(self.scale), self.scale);
+    }
+}
+
+/// Bounds of rays on the two other axes, at two places on an axis.
+struct Rectangles<F: Float> {
+    places: [f32; 2],
+    /// By axis, place and side.
+    ranges: [[[F; 2]; 2]; 2],
+}
+
+impl<F: Float> Rectangles<F> {
+    #[inline(always)]
+    fn new(places: [f32; 2]) -> Self {
+        let infinity = F::splat(f32::INFINITY);
+        Self { places, ranges: [[[infinity, -infinity]; 2]; 2] }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, ray: &Packet<F>, on: F::Mask, axis: usize) {
+        let ([org, org_b, org_c], [dir, dir_b, dir_c]) = (turn(ray.org, axis), turn(ray.dir, axis));
+        let inv = F::splat(1.0) / dir;
+        let (orgs, slopes) = ([org_b, org_c], [dir_b * inv, dir_c * inv]);
+        for end in 0..2 {
+            let way = F::splat(self.places[end]) - org;
+            for k in 0..2 {
+                let at = orgs[k] + way * slopes[k];
+                let [low, high] = self.ranges[k][end];
+                self.ranges[k][end] = [F::select(on, at.min(low), low), F::select(on, at.max(high), high)];
             }
         }
     }
-    let mut result = [[[0.0; 2]; 2]; 2];
-    for k in 0..2 {
-        for end in 0..2 {
-            result[k][end] = [ranges[k][end][0].reduce_min(), ranges[k][end][1].reduce_max()];
+
+    /// A lower (0) or upper (1) side, moved outwards.
+    #[inline(always)]
+    fn side(&self, k: usize, end: usize, side: usize, slack: f32) -> f32 {
+        if side == 0 {
+            self.ranges[k][end][0].reduce_min() - slack
+        } else {
+            self.ranges[k][end][1].reduce_max() + slack
         }
     }
-    result
 }
 
 /// The coordinates from an axis on.

@@ -1,6 +1,6 @@
 //! What traversal leaves behind: for each frustum its leaves, in the order in which it comes to them.
 
-use super::scan::exclusive_scan;
+use crate::sort::{compact, head_flags};
 use simd::Level;
 
 /// Leaves of all frusta, those of one side by side.
@@ -10,7 +10,6 @@ pub(super) struct Leaves {
     /// For each frustum the first of its leaves, and that behind the last.
     pub(super) ranges: Vec<[u32; 2]>,
     heads: Vec<u32>,
-    sums: Vec<u32>,
     bases: Vec<u32>,
 }
 
@@ -26,20 +25,13 @@ impl Leaves {
     pub(super) fn append(&mut self, level: Level, frusta: &[u32], nodes: &[u32]) {
         let offset = self.nodes.len() as u32;
         self.nodes.extend_from_slice(nodes);
-        self.heads.clear();
-        let mut before = None;
-        self.heads.extend(frusta.iter().map(|&frustum| u32::from(before.replace(frustum) != Some(frustum))));
-        self.sums.resize(frusta.len(), 0);
-        let distinct = exclusive_scan(level, &self.heads, &mut self.sums);
-        self.bases.clear();
-        self.bases.resize(distinct as usize + 1, frusta.len() as u32);
-        for (i, (&head, &place)) in self.heads.iter().zip(&self.sums).enumerate() {
-            if head != 0 {
-                self.bases[place as usize] = i as u32;
-            }
-        }
-        for ends in self.bases.windows(2) {
-            self.ranges[frusta[ends[0] as usize] as usize] = [offset + ends[0], offset + ends[1]];
+        self.heads.resize(frusta.len(), 0);
+        self.bases.resize(frusta.len(), 0);
+        head_flags(level, frusta, &mut self.heads);
+        let distinct = compact(level, &self.heads, &mut self.bases);
+        let ends = self.bases[..distinct].iter().skip(1).copied().chain([frusta.len() as u32]);
+        for (&base, end) in self.bases[..distinct].iter().zip(ends) {
+            self.ranges[frusta[base as usize] as usize] = [offset + base, offset + end];
         }
     }
 

@@ -7,7 +7,6 @@ mod intersect;
 mod leaves;
 mod portion;
 mod queue;
-mod scan;
 mod stages;
 #[cfg(test)]
 mod tests;

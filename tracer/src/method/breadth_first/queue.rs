@@ -3,7 +3,7 @@
 
 use super::children::{self, Children};
 use super::leaves::Leaves;
-use super::scan::exclusive_scan;
+use crate::sort::exclusive_scan;
 use crate::bvh::OctoBvh;
 use crate::geometry::frustum::Frustum;
 use crate::lanes::{self, Lanes};
