@@ -4,7 +4,7 @@ pub mod build;
 mod collapse;
 mod epo;
 mod node;
-mod octo;
+pub(crate) mod octo;
 mod refit;
 mod stats;
 mod validate;

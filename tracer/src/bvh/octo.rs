@@ -4,7 +4,7 @@ use super::collapse::in_twos;
 use super::{Bvh, Node};
 use crate::Error;
 use crate::geometry::Aabb;
-use simd::AlignedVec;
+use simd::{AlignedVec, Float, Vector};
 use std::borrow::Cow;
 
 /// How a binary tree becomes an [`OctoBvh`].
@@ -46,7 +46,7 @@ pub struct OctoBvh {
 
 /// A node: `min, block, max, order` in eight words, 32 bytes.
 ///
-/// The block says which nodes are its children: 24 bits for the first, 8 for their number. The order has three bits for each child: its slot. Slots are
+/// The block says which nodes are its children: 24 bits for the first, 8 for their number. The order has three bits for each slot: which child is in it. Slots are
 /// places in the node's box, three times halved: bit 2 of a slot says in which half across a first axis, bit 1 and bit 0 across a second and a third, which
 /// bits 24 to 29 of the order name (two for each). So for a ray that goes up on all axes the children lie in the order of their slots, and for another
 /// child `i` of that order is the one in slot `i ^ signs`, where `signs` has a bit for each of the three axes on which the ray goes down.
@@ -76,21 +76,58 @@ impl OctoNode {
         (block >> 8, block & 255)
     }
 
+    /// Which nodes are leaves, by their blocks.
+    #[inline(always)]
+    pub(crate) fn are_leaves<F: Float>(block: F) -> F::Mask {
+        (block.to_bits() & F::Index::splat(255)).eq(F::Index::splat(0))
+    }
+
     /// First triangle and number of triangles of a leaf.
     #[inline(always)]
     pub(crate) fn triangles(&self) -> (u32, u32) {
         (self.0[7].to_bits(), self.0[3].to_bits() >> 8)
     }
 
-    /// Three bits for each child: its place among all eight for rays with these signs (a bit per axis, set for negative).
+    /// The order of the children of an inner node for rays with these signs (a bit per axis, set for negative).
     #[inline(always)]
-    pub(crate) fn places(&self, signs: u32) -> u32 {
+    pub(crate) fn order(&self, signs: u32) -> Order {
         let order = self.0[7].to_bits();
         let sign = |shift: u32| signs >> (order >> shift & 3) & 1;
         let signs = sign(24) << 2 | sign(26) << 1 | sign(28);
-        (order & 0xff_ffff) ^ (signs * 0o1111_1111)
+        let number = self.0[3].to_bits() & 255;
+        Order { children: order & 0xff_ffff, taken: TAKEN[number as usize % 16], signs }
     }
 }
+
+/// Which child comes when: the one in slot `i ^ signs`, if that is taken.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Order {
+    /// Three bits for each slot.
+    pub(crate) children: u32,
+    /// A bit for each slot.
+    pub(crate) taken: u32,
+    pub(crate) signs: u32,
+}
+
+/// Slots that are taken, by the number of children: halves, quarters and eighths are as nearly equal as can be, the lower ones larger.
+const TAKEN: [u32; 16] = [
+    0,
+    0b0000_0001,
+    0b0001_0001,
+    0b0001_0101,
+    0b0101_0101,
+    0b0101_0111,
+    0b0111_0111,
+    0b0111_1111,
+    0b1111_1111,
+    0,
+    0,
+    0,
+    0,
+    0,
+    0,
+    0,
+];
 
 impl OctoBvh {
     /// Most nodes in a tree: what a block can name.
@@ -237,7 +274,8 @@ fn sort(nodes: &[Node], children: &mut [usize]) -> u32 {
         halves.dedup();
         groups = halves;
     }
-    slots.iter().enumerate().fold(order, |order, (child, slot)| order | slot << (3 * child))
+    let taken = slots.iter().take(children.len()).enumerate();
+    taken.fold(order, |order, (child, slot)| order | (child as u32) << (3 * slot))
 }
 
 fn range(numbers: impl Iterator<Item = f32>) -> (f32, f32) {
@@ -291,13 +329,18 @@ mod tests {
     /// comes first.
     fn check_order(node: &OctoNode, children: &[[f32; 8]]) {
         let axis = (node.0[7].to_bits() >> 24 & 3) as usize;
-        for signs in 0..8 {
-            let places: Vec<u32> = (0..children.len()).map(|k| node.places(signs) >> (3 * k) & 7).collect();
-            let all = places.iter().fold(0, |all, place| all | 1 << place);
-            assert_eq!(u32::count_ones(all) as usize, children.len());
-            for (k, place) in places.iter().enumerate() {
-                assert_eq!(node.places(!signs & 7) >> (3 * k) & 7, 7 - place);
+        let places = |signs: u32| {
+            let (order, mut places) = (node.order(signs), vec![8; children.len()]);
+            for place in (0..8).filter(|place| order.taken >> (place ^ order.signs) & 1 != 0) {
+                let child = order.children >> (3 * (place ^ order.signs)) & 7;
+                assert_eq!(std::mem::replace(&mut places[child as usize], place), 8);
             }
+            assert!(places.iter().all(|&place| place < 8));
+            places
+        };
+        for signs in 0..8 {
+            let (opposite, places) = (places(!signs & 7), places(signs));
+            assert!(places.iter().zip(opposite).all(|(place, opposite)| opposite == 7 - place));
             let up = if signs >> axis & 1 == 0 { 1.0 } else { -1.0 };
             let half = |upper: bool| {
                 let members = children.iter().zip(&places).filter(move |&(_, &place)| (place > 3) == upper);

@@ -380,3 +380,6 @@ fn slopes_are_small<F: Float>(blocks: &[RayBlock], space: &Space, axis: usize) -
     }
     !outside
 }
+
+#[cfg(test)]
+mod tests;

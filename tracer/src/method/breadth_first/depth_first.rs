@@ -1,6 +1,6 @@
 //! The same frusta through the same tree, one after the other with a stack: what Garanzha & Loop 2010 compare with in section 5.5.
 
-use super::children::{self, Children};
+use super::children::{self, Children, LEAF};
 use super::leaves::Leaves;
 use crate::bvh::OctoBvh;
 use crate::geometry::frustum::Frustum;
@@ -41,22 +41,22 @@ impl Lanes for DepthFirst<'_> {
         let mut stack = Vec::new();
         for (i, frustum) in self.frusta.iter().enumerate() {
             let begin = self.leaves.nodes.len();
-            stack.push(0);
+            stack.push(children::root(self.tree));
             while let Some(node) = stack.pop() {
-                let children = Children::of::<F>(rows, node, frustum);
                 if self.count {
                     counted.steps += 1;
                     counted.box_tests += children::number(self.tree, &[node]);
                 }
-                if children.is_leaf {
-                    self.leaves.nodes.push(node);
+                if node & LEAF != 0 {
+                    self.leaves.nodes.push(node & !LEAF);
                     continue;
                 }
+                let children = Children::of::<F>(rows, node, frustum);
                 // The first on top.
                 let mut k = children.number;
                 while k > 0 {
                     k -= 1;
-                    stack.push(children.base + (children.sorted >> (3 * k) & 7));
+                    stack.push(children.get(k));
                 }
             }
             self.leaves.ranges[i] = [begin as u32, self.leaves.nodes.len() as u32];

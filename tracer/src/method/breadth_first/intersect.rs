@@ -1,17 +1,18 @@
 //! Localized intersection (Garanzha & Loop 2010, section 3.4): packets are taken apart into groups of as many rays as a vector has lanes, and each group
 //! goes through the leaves that its frustum captured.
 
+use super::boxes::{Boxes, Sixteen};
 use super::build::Frusta;
 use super::leaves::Leaves;
 use crate::bvh::{Bvh, OctoBvh, OctoNode};
 use crate::geometry::frustum::{Frustum, Space};
-use crate::geometry::moller_trumbore;
+use crate::geometry::moller_trumbore::{self, Candidate};
 use crate::geometry::slab::{self, Near, PerRay};
-use crate::geometry::{Packet as Rays, RayBlock, Vec3};
+use crate::geometry::{Packet as Rays, RayBlock, Triangle, Vec3};
 use crate::lanes::Lanes;
 use crate::method::packet::found::{Found, Query};
 use crate::stats::{Count, Counters};
-use simd::{Block, Float, Mask, Vector};
+use simd::{Float, Mask};
 
 /// A portion of rays, packet by packet, against the leaves of their frusta.
 pub(super) struct Intersect<'a, Q: Query, C> {
@@ -35,11 +36,15 @@ impl<Q: Query, C: Count> Lanes for Intersect<'_, Q, C> {
         let mut first = 0;
         let mut boxes = Boxes::default();
         for (ends, &end) in self.bases.windows(2).zip(&self.frusta.ends) {
-            let frusta = [first, end as usize];
-            boxes.fill::<F>(self.tree, self.leaves, frusta);
+            boxes.clear();
+            for frustum in first..end as usize {
+                if F::LANES > 1 {
+                    boxes.add::<F>((self.bvh, self.tree), self.leaves.of(frustum));
+                }
+            }
             for block in ends[0] as usize..ends[1] as usize {
                 for chunk in 0..16 / F::LANES {
-                    self.group::<F>(block, chunk, frusta, &boxes);
+                    self.group::<F>(block, chunk, [first, end as usize], &boxes);
                 }
             }
             first = end as usize;
@@ -55,12 +60,8 @@ impl<Q: Query, C: Count> Intersect<'_, Q, C> {
         let ray = Rays::<F>::load(&self.rays[block], chunk);
         let mut found = Q::Found::new(&ray);
         let [x, y, z] = ray.signs();
-        let mut end = 0;
         for i in frusta[0]..frusta[1] {
             let (leaves, frustum) = (self.leaves.of(i), &self.frusta.all[i]);
-            let begin = end;
-            end += leaves.len().div_ceil(16);
-            let boxes = &boxes.0[begin..end];
             let mut rest = frustum.members.of(&ray, self.space.largest);
             if leaves.is_empty() || rest.none() {
                 continue;
@@ -82,7 +83,8 @@ impl<Q: Query, C: Count> Intersect<'_, Q, C> {
                         }
                     }
                 } else {
-                    self.visit(frustum.part(&ray, same, self.space), (&ray, same), near, (leaves, boxes), &mut found);
+                    let part = frustum.part(&ray, same, self.space);
+                    self.visit(part, (&ray, same), near, boxes.of(i - frusta[0]), &mut found);
                 }
                 rest &= !same;
             }
@@ -97,31 +99,22 @@ impl<Q: Query, C: Count> Intersect<'_, Q, C> {
         mut part: Frustum,
         (ray, on): (&Rays<F>, F::Mask),
         near: Near,
-        (leaves, boxes): (&[u32], &[Box16]),
+        boxes: &[Sixteen],
         found: &mut Q::Found<F>,
     ) {
-        for (leaves, boxes) in leaves.chunks(16).zip(boxes) {
+        for sixteen in boxes {
             for chunk in 0..16 / F::LANES {
-                let low = Vec3 {
-                    x: F::load_block(&boxes[0], chunk),
-                    y: F::load_block(&boxes[1], chunk),
-                    z: F::load_block(&boxes[2], chunk),
-                };
-                let high = Vec3 {
-                    x: F::load_block(&boxes[3], chunk),
-                    y: F::load_block(&boxes[4], chunk),
-                    z: F::load_block(&boxes[5], chunk),
-                };
                 self.count.box_test();
-                let mut met = part.meets(low, high).bitmask();
+                let (low, high) = (Vec3::load(&sixteen.low, chunk), Vec3::load(&sixteen.high, chunk));
+                let mut met = part.meets::<F>(low, high).bitmask();
                 if met == 0 {
                     continue;
                 }
                 let mut any = false;
                 while met != 0 {
-                    let i = met.trailing_zeros() as usize;
+                    let leaf = sixteen.nodes[(chunk * F::LANES + met.trailing_zeros() as usize) % 16];
                     met &= met - 1;
-                    any |= self.leaf(leaves[chunk * F::LANES + i], ray, near, found);
+                    any |= self.leaf(leaf, ray, near, found);
                 }
                 if any {
                     if found.complete() {
@@ -142,56 +135,29 @@ impl<Q: Query, C: Count> Intersect<'_, Q, C> {
         let mut any = false;
         if t_near.le(t_far).any() {
             let (first, number) = OctoNode::of_row(row).triangles();
-            for triangle in &self.bvh.triangles[first as usize..(first + number) as usize] {
+            let triangles = &self.bvh.triangles[first as usize..(first + number) as usize];
+            let (pairs, rest) = triangles.as_chunks::<2>();
+            for pair in pairs {
                 self.count.triangle_test();
-                if let Some(hit) = moller_trumbore::intersect(triangle, ray, PerRay, near) {
-                    self.count.triangle_hit();
-                    found.accept(triangle.id, hit);
-                    any = true;
-                }
+                self.count.triangle_test();
+                let [a, b] = moller_trumbore::intersect_two(pair, ray, PerRay, near);
+                any |= self.accept(&pair[0], a, found);
+                any |= self.accept(&pair[1], b, found);
+            }
+            for triangle in rest {
+                self.count.triangle_test();
+                let hit = moller_trumbore::intersect(triangle, ray, PerRay, near);
+                any |= self.accept(triangle, hit, found);
             }
         }
         any
     }
-}
 
-/// Lower and upper planes of sixteen boxes.
-type Box16 = [Block<f32>; 6];
-
-/// The boxes of the leaves of some frusta, those of each from a new sixteen on.
-#[derive(Default)]
-struct Boxes(Vec<Box16>);
-
-impl Boxes {
     #[inline(always)]
-    fn fill<F: Float>(&mut self, tree: &OctoBvh, leaves: &Leaves, frusta: [usize; 2]) {
-        self.0.clear();
-        if F::LANES == 1 {
-            // Of no use.
-            let blocks = leaves.ranges[frusta[0]..frusta[1]].iter().map(|[begin, end]| (end - begin).div_ceil(16));
-            self.0.resize(blocks.sum::<u32>() as usize, [Block([0.0; 16]); 6]);
-            return;
-        }
-        const NOTHING: [f32; 8] = {
-            let (low, high) = (f32::INFINITY, f32::NEG_INFINITY);
-            [low, low, low, 0.0, high, high, high, 0.0]
-        };
-        let rows = tree.rows();
-        for i in frusta[0]..frusta[1] {
-            for leaves in leaves.of(i).chunks(16) {
-                let mut sixteen = [NOTHING; 16];
-                for (to, &leaf) in sixteen.iter_mut().zip(leaves) {
-                    *to = rows[leaf as usize];
-                }
-                let mut block = [Block([0.0; 16]); 6];
-                for chunk in 0..16 / F::LANES {
-                    let [a, b, c, _, d, e, f, _] = F::load_rows8(&sixteen[chunk * F::LANES..]);
-                    for (column, to) in [a, b, c, d, e, f].into_iter().zip(&mut block) {
-                        column.store_block(to, chunk);
-                    }
-                }
-                self.0.push(block);
-            }
-        }
+    fn accept<F: Float>(&mut self, triangle: &Triangle, hit: Option<Candidate<F>>, found: &mut Q::Found<F>) -> bool {
+        let Some(hit) = hit else { return false };
+        self.count.triangle_hit();
+        found.accept(triangle.id, hit);
+        true
     }
 }

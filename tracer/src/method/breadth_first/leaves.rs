@@ -1,5 +1,6 @@
 //! What traversal leaves behind: for each frustum its leaves, in the order in which it comes to them.
 
+use super::children::LEAF;
 use crate::sort::{compact, head_flags};
 use simd::Level;
 
@@ -24,7 +25,7 @@ impl Leaves {
     /// Appends pairs of frusta and leaves, those of a frustum side by side: the compression of section 3.1 with frusta in the place of hashes.
     pub(super) fn append(&mut self, level: Level, frusta: &[u32], nodes: &[u32]) {
         let offset = self.nodes.len() as u32;
-        self.nodes.extend_from_slice(nodes);
+        self.nodes.extend(nodes.iter().map(|node| node & !LEAF));
         self.heads.resize(frusta.len(), 0);
         self.bases.resize(frusta.len(), 0);
         head_flags(level, frusta, &mut self.heads);
@@ -52,7 +53,7 @@ mod tests {
         for level in Level::available() {
             let mut leaves = Leaves::default();
             leaves.clear(7);
-            leaves.append(level, &[0, 0, 2, 3, 3, 3], &[10, 11, 12, 13, 14, 15]);
+            leaves.append(level, &[0, 0, 2, 3, 3, 3], &[10, 11, 12, 13 | LEAF, 14, 15]);
             leaves.append(level, &[], &[]);
             leaves.append(level, &[5], &[16]);
             let lists: Vec<&[u32]> = (0..7).map(|i| leaves.of(i)).collect();

@@ -1,5 +1,6 @@
 //! Frusta around sorted packets, breadth first through the tree: Garanzha & Loop 2010.
 
+mod boxes;
 mod build;
 mod children;
 mod depth_first;
@@ -20,6 +21,7 @@ use crate::bvh::{Bvh, OctoBvh};
 use crate::geometry::frustum::Space;
 use crate::geometry::{HitBatch, RayBatch};
 use crate::lanes::Width;
+use portion::Pool;
 use simd::Level;
 
 /// In which order frusta go through the tree. Both find the same hits.
@@ -62,6 +64,7 @@ pub struct BreadthFirst<'a> {
     packet: usize,
     queue: usize,
     visit: Visit,
+    pool: Pool,
 }
 
 impl<'a> BreadthFirst<'a> {
@@ -73,7 +76,7 @@ impl<'a> BreadthFirst<'a> {
     #[must_use]
     pub fn new(bvh: &'a Bvh, tree: &'a OctoBvh, level: Level, width: Width) -> Self {
         let space = Space::new(tree.bounds());
-        Self { bvh, tree, space, level, width, packet: 16, queue: Self::QUEUE, visit: Visit::default() }
+        Self { bvh, tree, space, level, width, packet: 16, queue: Self::QUEUE, visit: Visit::default(), pool: Pool::default() }
     }
 
     /// With packets of at most so many rays ("MaxSize"), in sixteens: by default 256.
@@ -86,13 +89,13 @@ impl<'a> BreadthFirst<'a> {
     /// again; for a single frustum queues grow.
     #[must_use]
     pub fn with_queue(self, elements: usize) -> Self {
-        Self { queue: elements.clamp(1, 1 << 28), ..self }
+        Self { queue: elements.clamp(1, 1 << 28), pool: Pool::default(), ..self }
     }
 
     /// With frusta in this order through the tree.
     #[must_use]
     pub fn with_visit(self, visit: Visit) -> Self {
-        Self { visit, ..self }
+        Self { visit, pool: Pool::default(), ..self }
     }
 
     /// As [`Method::closest`], and how long each stage took.
@@ -144,7 +147,7 @@ impl Method for BreadthFirst<'_> {
     }
 
     fn memory(&self) -> usize {
-        self.tree.bytes()
+        self.pool.bytes()
     }
 
     fn closest(&self, rays: &RayBatch, hits: &mut HitBatch, cx: &mut Context<'_>) -> Result<(), Error> {

@@ -27,7 +27,33 @@ struct Portion<'a, B> {
     results: &'a mut [B],
 }
 
-/// Memory that is kept from one portion to the next.
+/// Memory that is kept from one portion to the next: each thread takes what is free.
+#[derive(Debug, Default)]
+pub(super) struct Pool(Mutex<Vec<Scratch>>);
+
+impl Pool {
+    fn take(&self) -> Option<Scratch> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).pop()
+    }
+
+    fn give_back(&self, scratch: Scratch) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
+    }
+
+    /// Bytes of memory, used or not.
+    pub(super) fn bytes(&self) -> usize {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|scratch| scratch.queues.bytes()).sum()
+    }
+}
+
+/// A clone begins with no memory: it may want other queues.
+impl Clone for Pool {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+#[derive(Debug)]
 struct Scratch {
     frusta: Frusta,
     queues: Queues,
@@ -60,14 +86,12 @@ impl BreadthFirst<'_> {
             portions.push(Portion { rays: &rays[begin..end], bases, results: this });
             (results, first) = (rest, last);
         }
-        let free = Mutex::new(Vec::new());
         let count = cx.counters.is_some();
         let run = |portion: Portion<Q::Block>| {
             cx.check()?;
-            let taken = free.lock().unwrap_or_else(PoisonError::into_inner).pop();
-            let mut scratch = taken.unwrap_or_else(|| Scratch::new(self));
+            let mut scratch = self.pool.take().unwrap_or_else(|| Scratch::new(self));
             let done = self.portion::<Q>(portion, &mut scratch, count);
-            free.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
+            self.pool.give_back(scratch);
             Ok(done)
         };
         let zero = || (Stages::default(), Counters::default());

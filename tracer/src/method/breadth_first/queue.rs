@@ -1,7 +1,7 @@
 //! The level-synchronous traversal (Garanzha & Loop 2010, section 3.3): pairs of a frustum and a node go from one queue to another, a level of the
 //! tree at a time, and what is left in the end are pairs of a frustum and a leaf.
 
-use super::children::{self, Children};
+use super::children::{self, Children, LEAF};
 use super::leaves::Leaves;
 use crate::sort::exclusive_scan;
 use crate::bvh::OctoBvh;
@@ -54,9 +54,9 @@ pub(super) struct Queues {
     /// Boxes of the node's children that the frustum meets.
     numbers: Vec<u32>,
     sums: Vec<u32>,
-    /// Which children these are, from the first to the last along the frustum, three bits each.
+    /// Which children these are: see [`Children`].
     sorted: Vec<u32>,
-    /// What these three bits are added to.
+    /// What they are added to.
     bases: Vec<u32>,
     capacity: usize,
     /// Second halves of batches that were split, the last on top.
@@ -78,6 +78,12 @@ impl Queues {
         }
     }
 
+    pub(super) fn bytes(&self) -> usize {
+        let columns = [&self.input.frusta, &self.input.nodes, &self.output.frusta, &self.output.nodes];
+        let others = [&self.numbers, &self.sums, &self.sorted, &self.bases];
+        columns.iter().chain(&others).map(|column| column.len() * size_of::<u32>()).sum()
+    }
+
     /// Takes all frusta from the root to the leaves.
     pub(super) fn traverse(
         &mut self,
@@ -94,7 +100,7 @@ impl Queues {
                 if i >= self.input.len {
                     break;
                 }
-                (*frustum, *node) = ((first + i) as u32, 0);
+                (*frustum, *node) = ((first + i) as u32, children::root(tree));
             }
             loop {
                 self.to_leaves(level, tree, frusta, &mut count);
@@ -190,9 +196,13 @@ impl Lanes for Step<'_> {
             if let Some(&later) = nodes.get(i + 4) {
                 children::prefetch(rows, later);
             }
-            let children = Children::of::<F>(rows, node, &self.frusta[frustum as usize]);
+            let children = if node & LEAF != 0 {
+                Children::of_leaf(node)
+            } else {
+                inner = true;
+                Children::of::<F>(rows, node, &self.frusta[frustum as usize])
+            };
             (*number, *sorted, *base) = (children.number, children.sorted, children.base);
-            inner |= !children.is_leaf;
         }
         inner
     }
@@ -214,15 +224,16 @@ impl Lanes for Scatter<'_> {
     #[inline(always)]
     fn run<F: Float>(self) {
         let [to_frusta, to_nodes] = self.to;
-        let shifts = F::Index::load(&[0, 3, 6, 9, 12, 15, 18, 21]);
+        let shifts = F::Index::load(&[0, 4, 8, 12, 16, 20, 24, 28]);
         let from = self.frusta.iter().zip(self.numbers).zip(self.sums).zip(self.sorted).zip(self.bases);
         for ((((&frustum, &number), &sum), &sorted), &base) in from {
             // More than there are is written: what comes later is written over it.
             let mut k = 0;
             while k < number as usize {
-                let children = F::Index::splat(sorted >> (3 * k)).shr_lanes(shifts) & F::Index::splat(7);
+                let children = F::Index::splat(sorted >> (4 * k)).shr_lanes(shifts);
+                let leaf = (children & F::Index::splat(8)) << 28;
                 let at = sum as usize + k;
-                (F::Index::splat(base) + children).store(&mut to_nodes[at..]);
+                (F::Index::splat(base) + (children & F::Index::splat(7)) | leaf).store(&mut to_nodes[at..]);
                 F::Index::splat(frustum).store(&mut to_frusta[at..]);
                 k += F::LANES;
             }
