@@ -197,6 +197,24 @@ impl RayBatch {
         (0..self.len).map(|i| self.get(i))
     }
 
+    /// `len` places to write rays to, of which it is known whether they start at one point: what they held is left. Lanes past `len` are to be turned off
+    /// afterwards, by [`RayBatch::turn_off_rest`].
+    pub(crate) fn resize(&mut self, len: usize, origin: Option<[f32; 3]>) -> &mut [RayBlock] {
+        (self.len, self.origin) = (len, origin);
+        self.blocks.resize(len.div_ceil(16), RayBlock::NONE);
+        &mut self.blocks
+    }
+
+    /// Makes the lanes past the last ray rays that hit nothing.
+    pub(crate) fn turn_off_rest(&mut self) {
+        let used = (self.len + 15) % 16 + 1;
+        for lane in if self.len > 0 { used..16 } else { 0..0 } {
+            if let Some(last) = self.blocks.last_mut() {
+                last.set(lane, &Ray::NONE);
+            }
+        }
+    }
+
     /// A batch of `len` rays from one point, whose blocks `fill` will write: the number of the block and the block.
     ///
     /// `fill` sets directions and intervals; origins are set already. Lanes past `len` are turned off afterwards.

@@ -10,6 +10,7 @@ mod ready;
 mod reordering;
 pub(crate) mod search;
 mod single;
+mod sorted;
 mod walk;
 mod watertight;
 
@@ -19,6 +20,7 @@ pub use breadth_first::{BreadthFirst, Stages, Visit};
 pub use packet::{Order, Packet, SharedOrigin, SlabForm};
 pub use reordering::{Intervals, Partition, Reordering, Traversal};
 pub use single::Single;
+pub use sorted::Sorted;
 pub use walk::{Arity, Wide};
 pub(crate) use watertight::Vertices;
 pub use watertight::Watertight;
@@ -52,6 +54,29 @@ pub trait Method: Send + Sync {
     /// # Errors
     /// [`Error::Cancelled`] when the context's flag was raised; `occluded` is then of no use.
     fn any(&self, rays: &RayBatch, occluded: &mut BitVec, cx: &mut Context<'_>) -> Result<(), Error>;
+}
+
+/// Behind a box, so that a method can be chosen at run time where another holds it.
+impl<M: Method + ?Sized> Method for Box<M> {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+
+    fn source(&self) -> &'static str {
+        (**self).source()
+    }
+
+    fn memory(&self) -> usize {
+        (**self).memory()
+    }
+
+    fn closest(&self, rays: &RayBatch, hits: &mut HitBatch, cx: &mut Context<'_>) -> Result<(), Error> {
+        (**self).closest(rays, hits, cx)
+    }
+
+    fn any(&self, rays: &RayBatch, occluded: &mut BitVec, cx: &mut Context<'_>) -> Result<(), Error> {
+        (**self).any(rays, occluded, cx)
+    }
 }
 
 /// What a query is given beside its rays: whether to count, and a flag to stop it.

@@ -1,19 +1,11 @@
 //! Against loops.
 
 use super::*;
+use crate::sort::test::{self, random};
 use rayon::ThreadPoolBuilder;
 
 /// Lengths about those of vectors and chunks.
 const LENGTHS: [usize; 12] = [0, 1, 3, 15, 16, 17, 100, 1000, CHUNK - 1, CHUNK, CHUNK + 1, 3 * CHUNK + 77];
-
-fn random(len: usize, seed: u32) -> Vec<u32> {
-    let mut state = u64::from(seed) * 2 + 1;
-    let next = |_| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as u32
-    };
-    (0..len).map(next).collect()
-}
 
 /// Flags of which one in `rarity` is on.
 fn flags(len: usize, rarity: u32, seed: u32) -> Vec<u32> {
@@ -22,10 +14,7 @@ fn flags(len: usize, rarity: u32, seed: u32) -> Vec<u32> {
 
 /// At all levels, on one thread and on several.
 fn everywhere(check: impl Fn(Level) + Sync) {
-    for threads in [1, 3] {
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Level::available().for_each(&check));
-    }
+    test::everywhere(|| Level::available().for_each(&check));
 }
 
 #[test]
