@@ -49,13 +49,15 @@ pub(crate) struct Members {
     pub(crate) negative: bool,
     /// All ordinary rays; otherwise those whose largest component is that of the axis (the first of equal ones), with this sign.
     pub(crate) all: bool,
+    /// And of these in each block the rays in these lanes.
+    pub(crate) lanes: u16,
 }
 
 impl Members {
-    /// Lanes of valid rays that belong to the frustum.
+    /// Lanes of valid rays that belong to the frustum, of a chunk of a block.
     #[inline(always)]
-    pub(crate) fn of<F: Float>(&self, ray: &Packet<F>, largest: f32) -> F::Mask {
-        let valid = ordinary(ray, largest);
+    pub(crate) fn of<F: Float>(&self, ray: &Packet<F>, chunk: usize, largest: f32) -> F::Mask {
+        let valid = ordinary(ray, largest) & part_of::<F>(self.lanes, chunk);
         if self.all {
             return valid;
         }
@@ -70,6 +72,12 @@ impl Members {
         let negative = d.lt(F::splat(0.0));
         valid & mine & if self.negative { negative } else { !negative }
     }
+}
+
+/// The lanes of a chunk.
+#[inline(always)]
+fn part_of<F: Float>(lanes: u16, chunk: usize) -> F::Mask {
+    F::Mask::from_bitmask(u32::from(lanes) >> (chunk * F::LANES) & ((1 << F::LANES) - 1))
 }
 
 /// Lanes of valid rays that frusta are for: see the [proof](self). Others are traced one by one.
@@ -117,7 +125,7 @@ impl Frustum {
         for block in blocks {
             for chunk in 0..16 / F::LANES {
                 let ray = Packet::<F>::load(block, chunk);
-                extent.add(&ray, members.of(&ray, space.largest), members.axis, space);
+                extent.add(&ray, members.of(&ray, chunk, space.largest), members.axis, space);
             }
         }
         let mut this = Self::between(&extent, members, signs, space);
@@ -126,7 +134,7 @@ impl Frustum {
             for block in blocks {
                 for chunk in 0..16 / F::LANES {
                     let ray = Packet::<F>::load(block, chunk);
-                    rectangles.add(&ray, members.of(&ray, space.largest), members.axis);
+                    rectangles.add(&ray, members.of(&ray, chunk, space.largest), members.axis);
                 }
             }
             this.join(&rectangles);
@@ -290,29 +298,38 @@ pub(crate) struct Survey {
     /// Smallest and largest component of their directions.
     low: [f32; 3],
     high: [f32; 3],
+    lanes: u16,
 }
 
 impl Survey {
-    /// Of the ordinary rays of these blocks; `odd` is told the lanes of valid rays that are not ordinary.
+    /// Of the ordinary rays in some lanes of these blocks; `odd` is told the valid rays that are not ordinary, by block (from `first` on) and lane.
     #[inline(always)]
-    pub(crate) fn new<F: Float>(blocks: &[RayBlock], space: &Space, odd: &mut Vec<(u32, u16)>, first: u32) -> Self {
+    pub(crate) fn new<F: Float>(
+        blocks: &[RayBlock],
+        lanes: u16,
+        space: &Space,
+        odd: &mut Vec<(u32, u16)>,
+        first: u32,
+    ) -> Self {
         let infinity = F::splat(f32::INFINITY);
         let (mut low, mut high) = (Vec3 { x: infinity, y: infinity, z: infinity }, Vec3::splat([f32::NEG_INFINITY; 3]));
         for (i, block) in blocks.iter().enumerate() {
+            let mut others_here = 0;
             for chunk in 0..16 / F::LANES {
                 let ray = Packet::<F>::load(block, chunk);
-                let on = ordinary(&ray, space.largest);
+                let (here, on) = (part_of::<F>(lanes, chunk), ordinary(&ray, space.largest));
+                let (on, others) = (on & here, ray.valid & !on & here);
                 low = Vec3::select(on, low.min(ray.dir), low);
                 high = Vec3::select(on, high.max(ray.dir), high);
-                let others = ray.valid & !on;
-                if others.any() {
-                    odd.push((first + i as u32, (others.bitmask() as u16) << (chunk * F::LANES)));
-                }
+                others_here |= (others.bitmask() as u16) << (chunk * F::LANES);
+            }
+            if others_here != 0 {
+                odd.push((first + i as u32, others_here));
             }
         }
         let low = [low.x.reduce_min(), low.y.reduce_min(), low.z.reduce_min()];
         let high = [high.x.reduce_max(), high.y.reduce_max(), high.z.reduce_max()];
-        Self { any: low[0] <= high[0], low, high }
+        Self { any: low[0] <= high[0], low, high, lanes }
     }
 
     /// The axis that the rays follow on the whole, if they all do.
@@ -330,9 +347,9 @@ impl Survey {
         let limit = 2.0 * if negative { -self.high[axis] } else { self.low[axis] };
         let mut same = most((axis + 1) % 3) <= limit && most((axis + 2) % 3) <= limit;
         if !same {
-            same = slopes_are_small::<F>(blocks, space, axis);
+            same = slopes_are_small::<F>(blocks, self.lanes, space, axis);
         }
-        if same { Some(Members { axis, negative, all: true }) } else { None }
+        if same { Some(Members { axis, negative, all: true, lanes: self.lanes }) } else { None }
     }
 
     /// Appends the frusta around all ordinary rays: one, or if they part one for each of the six directions along an axis.
@@ -350,11 +367,11 @@ impl Survey {
             return;
         }
         for way in 0..6 {
-            let members = Members { axis: way / 2, negative: way % 2 != 0, all: false };
+            let members = Members { axis: way / 2, negative: way % 2 != 0, all: false, lanes: self.lanes };
             let mut any = false;
             for block in blocks {
                 for chunk in 0..16 / F::LANES {
-                    any |= members.of(&Packet::<F>::load(block, chunk), space.largest).any();
+                    any |= members.of(&Packet::<F>::load(block, chunk), chunk, space.largest).any();
                 }
             }
             if any {
@@ -367,12 +384,12 @@ impl Survey {
 
 /// Whether no component of an ordinary ray is more than twice that on the axis.
 #[inline(always)]
-fn slopes_are_small<F: Float>(blocks: &[RayBlock], space: &Space, axis: usize) -> bool {
+fn slopes_are_small<F: Float>(blocks: &[RayBlock], lanes: u16, space: &Space, axis: usize) -> bool {
     let mut outside = false;
     for block in blocks {
         for chunk in 0..16 / F::LANES {
             let ray = Packet::<F>::load(block, chunk);
-            let on = ordinary(&ray, space.largest);
+            let on = ordinary(&ray, space.largest) & part_of::<F>(lanes, chunk);
             let [a, b, c] = turn(ray.dir, axis);
             let limit = a.abs() + a.abs();
             outside |= (on & (limit.lt(b.abs()) | limit.lt(c.abs()))).any();

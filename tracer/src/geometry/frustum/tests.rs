@@ -9,7 +9,10 @@ use simd::{Level, kernel};
 kernel! {
     fn frusta_of<S>(blocks: &[RayBlock], space: &Space) -> (Vec<Frustum>, Vec<(u32, u16)>) {
         let (mut frusta, mut odd) = (Vec::new(), Vec::new());
-        Survey::new::<S::Float>(blocks, space, &mut odd, 0).frusta::<S::Float>(blocks, space, &mut frusta);
+        for lanes in [0x0fff, 0xf000] {
+            let survey = Survey::new::<S::Float>(blocks, lanes, space, &mut odd, 0);
+            survey.frusta::<S::Float>(blocks, space, &mut frusta);
+        }
         (frusta, odd)
     }
 }
@@ -20,7 +23,7 @@ kernel! {
         let mut met = [false; 4];
         for (chunk, met) in met.iter_mut().enumerate() {
             let ray = Packet::<S::Float4>::load(block, chunk);
-            let on = frustum.members.of(&ray, space.largest);
+            let on = frustum.members.of(&ray, chunk, space.largest);
             if on.any() {
                 let mut part = frustum.part(&ray, on, space);
                 part.shorten(&ray, on, ray.t_max.min(S::Float4::splat(reach)));
@@ -121,12 +124,12 @@ fn no_box_that_a_ray_meets_is_culled() {
         });
         let space = Space::new(bounds);
         let (frusta, odd) = frusta_of(Level::best(), &blocks, &space);
-        whole += u32::from(frusta.len() == 1 && odd.is_empty());
-        parts += u32::from(frusta.len() > 1);
+        whole += u32::from(frusta.len() == 2 && odd.is_empty());
+        parts += u32::from(frusta.len() > 2);
         for (i, ray) in rays.iter().enumerate() {
             let ready = Packet::of(ray);
             let is_odd = odd.iter().any(|&(block, lanes)| block as usize == i / 16 && lanes >> (i % 16) & 1 != 0);
-            let members: Vec<&Frustum> = frusta.iter().filter(|f| f.members.of(&ready, space.largest)).collect();
+            let members: Vec<&Frustum> = frusta.iter().filter(|f| f.members.of(&ready, i % 16, space.largest)).collect();
             assert_eq!(members.len(), usize::from(ready.valid && !is_odd), "each ray in one frustum: {ray:?}");
             for planes in &boxes {
                 let reach = random.between(0.0, 2.0) * scale;

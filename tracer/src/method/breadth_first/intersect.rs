@@ -4,6 +4,7 @@
 use super::boxes::{Boxes, Sixteen};
 use super::build::Frusta;
 use super::leaves::Leaves;
+use super::runs::Runs;
 use crate::bvh::{Bvh, OctoBvh, OctoNode};
 use crate::geometry::frustum::{Frustum, Space};
 use crate::geometry::moller_trumbore::{self, Candidate};
@@ -21,8 +22,7 @@ pub(super) struct Intersect<'a, Q: Query, C> {
     pub(super) space: &'a Space,
     pub(super) rays: &'a [RayBlock],
     pub(super) results: &'a mut [Q::Block],
-    /// First block of each packet, and the end of the last.
-    pub(super) bases: &'a [u32],
+    pub(super) runs: Runs<'a>,
     pub(super) frusta: &'a Frusta,
     pub(super) leaves: &'a Leaves,
     pub(super) count: C,
@@ -35,14 +35,15 @@ impl<Q: Query, C: Count> Lanes for Intersect<'_, Q, C> {
     fn run<F: Float>(mut self) -> Counters {
         let mut first = 0;
         let mut boxes = Boxes::default();
-        for (ends, &end) in self.bases.windows(2).zip(&self.frusta.ends) {
+        for (run, &end) in self.frusta.ends.iter().enumerate() {
+            let blocks = self.runs.blocks(run);
             boxes.clear();
             for frustum in first..end as usize {
                 if F::LANES > 1 {
                     boxes.add::<F>((self.bvh, self.tree), self.leaves.of(frustum));
                 }
             }
-            for block in ends[0] as usize..ends[1] as usize {
+            for block in blocks[0] as usize..blocks[1] as usize {
                 for chunk in 0..16 / F::LANES {
                     self.group::<F>(block, chunk, [first, end as usize], &boxes);
                 }
@@ -62,7 +63,7 @@ impl<Q: Query, C: Count> Intersect<'_, Q, C> {
         let [x, y, z] = ray.signs();
         for i in frusta[0]..frusta[1] {
             let (leaves, frustum) = (self.leaves.of(i), &self.frusta.all[i]);
-            let mut rest = frustum.members.of(&ray, self.space.largest);
+            let mut rest = frustum.members.of(&ray, chunk, self.space.largest);
             if leaves.is_empty() || rest.none() {
                 continue;
             }

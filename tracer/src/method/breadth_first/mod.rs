@@ -8,21 +8,25 @@ mod intersect;
 mod leaves;
 mod portion;
 mod queue;
+mod runs;
 mod stages;
 #[cfg(test)]
 mod tests;
 
 pub use stages::Stages;
 
-use super::packet::found::{Any, Closest, Query};
+use super::packet::found::{Any, Closest};
 use super::{BitVec, Context, Method};
 use crate::Error;
 use crate::bvh::{Bvh, OctoBvh};
 use crate::geometry::frustum::Space;
 use crate::geometry::{HitBatch, RayBatch};
 use crate::lanes::Width;
+use crate::sort::{RayHash, RaySorter, Reorder};
 use portion::Pool;
+use runs::Decomposition;
 use simd::Level;
+use std::time::{Duration, Instant};
 
 /// In which order frusta go through the tree. Both find the same hits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -64,6 +68,8 @@ pub struct BreadthFirst<'a> {
     packet: usize,
     queue: usize,
     visit: Visit,
+    /// For batches of rays that do not start at one point.
+    sort: Option<RayHash>,
     pool: Pool,
 }
 
@@ -76,7 +82,18 @@ impl<'a> BreadthFirst<'a> {
     #[must_use]
     pub fn new(bvh: &'a Bvh, tree: &'a OctoBvh, level: Level, width: Width) -> Self {
         let space = Space::new(tree.bounds());
-        Self { bvh, tree, space, level, width, packet: 16, queue: Self::QUEUE, visit: Visit::default(), pool: Pool::default() }
+        Self {
+            bvh,
+            tree,
+            space,
+            level,
+            width,
+            packet: 16,
+            queue: Self::QUEUE,
+            visit: Visit::default(),
+            sort: Some(RayHash::new(&space.bounds, Reorder::Hash)),
+            pool: Pool::default(),
+        }
     }
 
     /// With packets of at most so many rays ("MaxSize"), in sixteens: by default 256.
@@ -98,6 +115,15 @@ impl<'a> BreadthFirst<'a> {
         Self { visit, pool: Pool::default(), ..self }
     }
 
+    /// With rays sorted by this hash, and packets of rays of one cell, if the rays do not all start at one point; or never, so that packets are what comes
+    /// one after the other. By default the paper's cells and [`Reorder::Hash`]. Rays that start at one point are taken as they come: eye rays along a Z-curve,
+    /// say.
+    #[must_use]
+    pub fn with_sort(self, hash: Option<RayHash>) -> Self {
+        let hash = hash.filter(|hash| hash.key() != Reorder::None);
+        Self { sort: hash, pool: Pool::default(), ..self }
+    }
+
     /// As [`Method::closest`], and how long each stage took.
     ///
     /// # Errors
@@ -108,7 +134,17 @@ impl<'a> BreadthFirst<'a> {
         hits: &mut HitBatch,
         cx: &mut Context<'_>,
     ) -> Result<Stages, Error> {
-        self.find::<Closest>(rays, hits.resize(rays.len()), cx)
+        let Some((mut sorter, packets, begin)) = self.sorted(rays) else {
+            return self.trace::<Closest>(rays.blocks(), self.packets(rays).runs(), hits.resize(rays.len()), cx);
+        };
+        let mut found = HitBatch::new();
+        let to = found.resize(rays.len());
+        let mut stages = self.trace::<Closest>(sorter.rays().blocks(), packets.runs(), to, cx)?;
+        let end = Instant::now();
+        sorter.put_hits_back(&found, hits);
+        stages.sort += begin + end.elapsed();
+        self.pool.give_back_sorter(sorter);
+        Ok(stages)
     }
 
     /// As [`Method::any`], and how long each stage took.
@@ -121,19 +157,34 @@ impl<'a> BreadthFirst<'a> {
         occluded: &mut BitVec,
         cx: &mut Context<'_>,
     ) -> Result<Stages, Error> {
-        self.find::<Any>(rays, occluded.resize(rays.len()), cx)
+        let Some((mut sorter, packets, begin)) = self.sorted(rays) else {
+            return self.trace::<Any>(rays.blocks(), self.packets(rays).runs(), occluded.resize(rays.len()), cx);
+        };
+        let mut found = BitVec::new();
+        let to = found.resize(rays.len());
+        let mut stages = self.trace::<Any>(sorter.rays().blocks(), packets.runs(), to, cx)?;
+        let end = Instant::now();
+        sorter.put_bits_back(&found, occluded);
+        stages.sort += begin + end.elapsed();
+        self.pool.give_back_sorter(sorter);
+        Ok(stages)
     }
 
-    fn find<Q: Query>(
-        &self,
-        rays: &RayBatch,
-        results: &mut [Q::Block],
-        cx: &mut Context<'_>,
-    ) -> Result<Stages, Error> {
-        let blocks = rays.blocks();
-        let mut bases: Vec<u32> = (0..blocks.len() as u32).step_by(self.packet).collect();
-        bases.push(blocks.len() as u32);
-        self.trace::<Q>(blocks, &bases, results, cx)
+    /// What comes one after the other.
+    fn packets(&self, rays: &RayBatch) -> Decomposition {
+        Decomposition::regular(rays.blocks().len(), self.packet)
+    }
+
+    /// Sorts the rays if they shall be: with their packets, and how long it took.
+    fn sorted(&self, rays: &RayBatch) -> Option<(RaySorter, Decomposition, Duration)> {
+        let hash = self.sort.filter(|_| !rays.is_empty() && rays.origin().is_none())?;
+        let begin = Instant::now();
+        let mut sorter = self.pool.sorter().unwrap_or_else(|| RaySorter::new(self.level, hash));
+        sorter.order(rays);
+        sorter.gather(rays);
+        let starts = sorter.cells().map(|(_, start)| start);
+        let packets = Decomposition::of_cells(starts, rays.blocks().len(), self.packet);
+        Some((sorter, packets, begin.elapsed()))
     }
 }
 

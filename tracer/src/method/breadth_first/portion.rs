@@ -5,44 +5,56 @@ use super::depth_first;
 use super::intersect::Intersect;
 use super::leaves::Leaves;
 use super::queue::Queues;
+use super::runs::Runs;
 use super::{BreadthFirst, Stages, Visit};
 use crate::Error;
 use crate::geometry::RayBlock;
 use crate::lanes;
 use crate::method::packet::found::Query;
 use crate::method::{Context, packet};
+use crate::sort::RaySorter;
 use crate::stats::{Counters, NoCount};
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Packets in a portion.
-const PACKETS: usize = 64;
+/// Blocks of rays in a portion, a few more or less.
+const BLOCKS: usize = 1024;
 
 /// Some packets, and where their results go.
 struct Portion<'a, B> {
     rays: &'a [RayBlock],
-    /// First block of each packet, and the end of the last, from the beginning of the portion.
-    bases: Vec<u32>,
+    runs: Runs<'a>,
     results: &'a mut [B],
 }
 
 /// Memory that is kept from one portion to the next: each thread takes what is free.
 #[derive(Debug, Default)]
-pub(super) struct Pool(Mutex<Vec<Scratch>>);
+pub(super) struct Pool {
+    free: Mutex<Vec<Scratch>>,
+    sorters: Mutex<Vec<RaySorter>>,
+}
 
 impl Pool {
     fn take(&self) -> Option<Scratch> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).pop()
+        self.free.lock().unwrap_or_else(PoisonError::into_inner).pop()
     }
 
     fn give_back(&self, scratch: Scratch) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
+        self.free.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
     }
 
-    /// Bytes of memory, used or not.
+    pub(super) fn sorter(&self) -> Option<RaySorter> {
+        self.sorters.lock().unwrap_or_else(PoisonError::into_inner).pop()
+    }
+
+    pub(super) fn give_back_sorter(&self, sorter: RaySorter) {
+        self.sorters.lock().unwrap_or_else(PoisonError::into_inner).push(sorter);
+    }
+
+    /// Bytes of the queues, used or not.
     pub(super) fn bytes(&self) -> usize {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|scratch| scratch.queues.bytes()).sum()
+        self.free.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|scratch| scratch.queues.bytes()).sum()
     }
 }
 
@@ -68,22 +80,25 @@ impl Scratch {
 }
 
 impl BreadthFirst<'_> {
-    /// Traces packets, each of which is the blocks between two of `bases`, on all threads.
+    /// Traces the packets of these runs on all threads.
     pub(super) fn trace<Q: Query>(
         &self,
         rays: &[RayBlock],
-        bases: &[u32],
+        runs: Runs<'_>,
         mut results: &mut [Q::Block],
         cx: &mut Context<'_>,
     ) -> Result<Stages, Error> {
         let mut portions = Vec::new();
         let mut first = 0;
-        while first + 1 < bases.len() {
-            let last = (first + PACKETS).min(bases.len() - 1);
-            let (begin, end) = (bases[first] as usize, bases[last] as usize);
+        while first < runs.len() {
+            let mut last = first + 1;
+            while last < runs.len() && ((runs.blocks(last)[1] - runs.blocks(first)[0]) as usize) <= BLOCKS {
+                last += 1;
+            }
+            let part = runs.part(first, last);
+            let [begin, end] = part.all_blocks();
             let (this, rest) = results.split_at_mut(end - begin);
-            let bases = bases[first..=last].iter().map(|base| base - begin as u32).collect();
-            portions.push(Portion { rays: &rays[begin..end], bases, results: this });
+            portions.push(Portion { rays: &rays[begin..end], runs: part, results: this });
             (results, first) = (rest, last);
         }
         let count = cx.counters.is_some();
@@ -114,7 +129,7 @@ impl BreadthFirst<'_> {
         count: bool,
     ) -> (Stages, Counters) {
         let Self { bvh, tree, ref space, level, .. } = *self;
-        let Portion { rays, ref bases, results } = portion;
+        let Portion { rays, runs, results } = portion;
         let Scratch { frusta, queues, leaves } = scratch;
         if tree.is_empty() {
             results.fill(Q::NOTHING);
@@ -122,7 +137,7 @@ impl BreadthFirst<'_> {
         }
         let mut counters = Counters::default();
         let begin = Instant::now();
-        lanes::run_long(level, self.width, Build { rays, bases, space, frusta });
+        lanes::run_long(level, self.width, Build { rays, runs, space, frusta });
         let built = Instant::now();
         let counted = if count { Some(&mut counters.frusta) } else { None };
         match self.visit {
@@ -136,11 +151,11 @@ impl BreadthFirst<'_> {
             counters.frusta.leaves = leaves.nodes.len() as u64;
             let (frusta, leaves, count) = (&*frusta, &*leaves, Counters::default());
             // The work is the same at every level.
-            let job = Intersect::<Q, _> { bvh, tree, space, rays, results, bases, frusta, leaves, count };
+            let job = Intersect::<Q, _> { bvh, tree, space, rays, results, runs, frusta, leaves, count };
             counters = counters + lanes::run_scalar(width, job);
         } else {
             let (frusta, leaves, count) = (&*frusta, &*leaves, NoCount);
-            let job = Intersect::<Q, _> { bvh, tree, space, rays, results, bases, frusta, leaves, count };
+            let job = Intersect::<Q, _> { bvh, tree, space, rays, results, runs, frusta, leaves, count };
             lanes::run_plain_if_emulated(level, width, job);
         }
         for &(block, odd) in &frusta.odd {

@@ -97,15 +97,23 @@ fn hits_with_all_parameters() {
             let what = format!("tree {i}, {levels} levels, {max_leaf}");
             let depth = check(&method.clone().with_visit(Visit::DepthFirst), setup, &format!("{what}, depth first"));
             assert_eq!((depth.frusta.leaves, depth.frusta.box_tests), (base.leaves, base.box_tests));
+            let given = check(&method.clone().with_sort(None), setup, &format!("{what}, not sorted")).frusta;
+            assert!(given.frusta < base.frusta, "what is not sorted makes less frusta, and wider ones");
             for packet in [16, 48, 512] {
-                check(&method.clone().with_packet(packet), setup, &format!("{what}, packets of {packet}"));
+                let method = method.clone().with_packet(packet);
+                check(&method, setup, &format!("{what}, packets of {packet}"));
+                check(&method.with_sort(None), setup, &format!("{what}, packets of {packet}, not sorted"));
+            }
+            for (key, cell) in [(Reorder::Hash, 0.2), (Reorder::Origin, 0.5), (Reorder::Direction, 0.1)] {
+                let hash = RayHash::with_cell(&octo.bounds(), key, cell);
+                check(&method.clone().with_sort(Some(hash)), setup, &format!("{what}, by {key}, cells of {cell}"));
             }
             for queue in [1, 7, 100] {
                 let short = check(&method.clone().with_queue(queue), setup, &format!("{what}, queue of {queue}"));
                 // Splitting leaves out nothing and repeats nothing, but for how often leaves are carried down.
                 let same = |f: crate::stats::Frusta| (f.frusta, f.leaves, f.box_tests, f.groups, f.rays);
                 assert_eq!(same(short.frusta), same(base), "{what}, queue of {queue}");
-                assert!(short.frusta.splits > 0 || queue == 100, "{what}, queue of {queue}");
+                assert!(short.frusta.splits > 0 || queue != 7, "{what}, queue of {queue}");
             }
         }
     }
