@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! cargo run --release -p bench -- boulos
+//! cargo run --release -p bench -- sort
 //! ```
 
 mod boulos;
 mod console;
 mod machine;
+mod sort;
 
 use clap::{Parser, Subcommand};
 use console::Console;
@@ -24,12 +26,16 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Boulos(boulos::Args),
+    Sort(sort::Args),
 }
 
 fn main() -> ExitCode {
-    let Cli { command: Command::Boulos(args) } = Cli::parse();
     let console = Console::new();
-    let Err(error) = boulos::run(&args, &console) else { return ExitCode::SUCCESS };
+    let done = match Cli::parse().command {
+        Command::Boulos(args) => boulos::run(&args, &console),
+        Command::Sort(args) => sort::run(&args, &console),
+    };
+    let Err(error) = done else { return ExitCode::SUCCESS };
     console.clear();
     eprintln!("error: {error}");
     match error {

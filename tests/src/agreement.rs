@@ -3,14 +3,15 @@
 use crate::brute_force;
 use simd::{Isa, Level};
 use tracer::Scene;
-use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
-use tracer::geometry::{Hit, HitBatch, RayBatch, Triangle};
+use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, OctoBvh, OctoConfig, WideBvh};
+use tracer::geometry::{Aabb, Hit, HitBatch, RayBatch, Triangle};
 use tracer::method::{
-    Auto, BitVec, Context, Intervals, Limits, Method, Packet, Partition, Reordering, SharedOrigin, Single, SlabForm,
-    Traversal, Width,
+    Auto, BitVec, BreadthFirst, Context, Intervals, Limits, Method, Packet, Partition, Reordering, SharedOrigin, Single,
+    SlabForm, Sorted, Traversal, Visit, Width,
 };
 use tracer::model::Mesh;
 use tracer::progress::Silent;
+use tracer::sort::{RayHash, Reorder};
 
 /// The trees that methods need over a mesh.
 #[derive(Debug)]
@@ -20,6 +21,9 @@ pub struct Trees {
     four: WideBvh<4>,
     eight: WideBvh<8>,
     sixteen: WideBvh<16>,
+    octo: OctoBvh,
+    /// The same with two children a node and larger leaves.
+    halves: OctoBvh,
 }
 
 impl Trees {
@@ -42,7 +46,9 @@ impl Trees {
         let binary = Bvh::build(mesh, config, &Silent).expect("a valid mesh");
         let config = CollapseConfig::default();
         let (four, eight, sixteen) = (binary.collapse(&config), binary.collapse(&config), binary.collapse(&config));
-        Self { name, binary, four, eight, sixteen }
+        let octo = |config| OctoBvh::new(&binary, &config).expect("few nodes");
+        let (octo, halves) = (octo(OctoConfig::default()), octo(OctoConfig { levels: 1, max_leaf: 20 }));
+        Self { name, binary, four, eight, sixteen, octo, halves }
     }
 }
 
@@ -73,12 +79,17 @@ pub fn check(what: &str, trees: &Trees, levels: &[Level], rays: &RayBatch, expec
         same(&Single::<16>::new(&trees.sixteen, level), "16");
         same(&Auto::new(&trees.eight, level), "");
         same(&Auto::new(&trees.eight, level).with_limits(early), "that keeps rays together");
+        let bounds = trees.binary.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds());
+        same(&Sorted::new(Single::new(&trees.eight, level), level, &bounds, Reorder::Hash), "by hash");
+        let packet = Packet::new(&trees.binary, level, Width::Auto);
+        same(&Sorted::new(packet, level, &bounds, Reorder::Direction), "by direction");
         for width in [Width::One, Width::Four, Width::Eight, Width::Sixteen] {
             let packet = Packet::new(&trees.binary, level, width);
             same(&packet.with_shared_origin(SharedOrigin::Always), &format!("{width}"));
             let loose = packet.with_form(SlabForm::Conservative).with_shared_origin(SharedOrigin::Never);
             same(&loose, &format!("{width} conservative"));
             check_reordering(&trees.binary, level, width, &same);
+            check_frusta(trees, level, width, &same);
         }
     }
 }
@@ -101,6 +112,25 @@ fn check_reordering(bvh: &Bvh, level: Level, width: Width, same: &dyn Fn(&dyn Me
         same(&often.clone().with_intervals(Intervals::Loose), "8, loose");
         same(&often.with_partition(Partition::InPlace), "8, in place");
     }
+}
+
+fn check_frusta(trees: &Trees, level: Level, width: Width, same: &dyn Fn(&dyn Method, &str)) {
+    // Emulated levels have one lane at any width.
+    if matches!(level.isa(), Isa::Serial | Isa::Scalar) && width != Width::Eight {
+        return;
+    }
+    let method = BreadthFirst::new(&trees.binary, &trees.octo, level, width);
+    same(&method, &format!("{width}"));
+    same(&method.clone().with_sort(None), &format!("{width}, not sorted"));
+    if width != Width::Eight {
+        return;
+    }
+    same(&method.clone().with_packet(16).with_queue(5), "8, small packets and queues");
+    same(&method.clone().with_visit(Visit::DepthFirst), "8, depth first");
+    let hash = RayHash::with_cell(&trees.octo.bounds(), Reorder::Origin, 0.1);
+    let halves = BreadthFirst::new(&trees.binary, &trees.halves, level, width).with_sort(Some(hash));
+    same(&halves, "8, two children a node");
+    same(&halves.with_packet(1024).with_sort(None).with_queue(1), "8, two children a node, large packets");
 }
 
 /// Checks that watertight scenes over trees of two builders find the same, at all levels, in batches and ray by ray.

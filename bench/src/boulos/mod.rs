@@ -1,7 +1,7 @@
 //! Tables 1 to 4 and figures 6 to 8 of Boulos, Wald and Benthin 2008, "Adaptive Ray Packet Reordering", measured anew.
 
 mod chart;
-mod clock;
+pub mod clock;
 mod counts;
 mod frames;
 mod goals;

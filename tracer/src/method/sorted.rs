@@ -89,7 +89,7 @@ impl<M: Method> Method for Sorted<M> {
         "Garanzha and Loop 2010, section 3.1"
     }
 
-    /// The method's. What sorts takes 120 bytes for each ray of the largest batch beside.
+    /// The method's. What sorts takes some 150 bytes for each ray of the largest batch beside.
     fn memory(&self) -> usize {
         self.method.memory()
     }

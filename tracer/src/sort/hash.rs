@@ -2,7 +2,7 @@
 
 use crate::geometry::{Aabb, RayBatch, RayBlock, Vec3};
 use rayon::prelude::*;
-use simd::{Float, Level, Simd, Uint, Vector, kernel};
+use simd::{Float, Level, Uint, Vector, kernel};
 use std::fmt;
 use std::str::FromStr;
 

@@ -63,6 +63,12 @@ impl RaySorter {
         self.sort.cells()
     }
 
+    /// How many runs of rays were sorted: see [`RaySort::runs`].
+    #[must_use]
+    pub fn runs(&self) -> usize {
+        self.sort.runs()
+    }
+
     /// The rays in the order that was found last, which must have been theirs.
     ///
     /// # Panics

@@ -66,6 +66,27 @@ fn every_method_finds_the_same() {
 }
 
 #[test]
+fn every_order_of_rays_finds_the_same() {
+    let folder = Folder::new();
+    let plain = folder.json("render balls:1 --size 64x48 --shadows --json");
+    assert_eq!(plain["reorder"], "none");
+    let path = folder.json("render balls:1 --size 32x24 --integrator path --json");
+    for order in ["hash", "origin", "direction"] {
+        let other = folder.json(&format!("render balls:1 --size 64x48 --shadows --json --reorder {order}"));
+        assert_eq!(other["reorder"], order);
+        assert_eq!((&other["hits_hash"], &other["image_hash"]), (&plain["hits_hash"], &plain["image_hash"]), "{order}");
+        let other = folder.json(&format!("render balls:1 --size 32x24 --integrator path --json --reorder {order}"));
+        assert_eq!(other["image_hash"], path["image_hash"], "{order}");
+    }
+    let report = folder.json("compare balls:1 --size 64x48 --repeat 1 --format json --method auto --reorder hash");
+    assert_eq!(report["all_identical"], true);
+    let rows = report["rows"].as_array().expect("rows");
+    let sorted = rows.iter().filter(|row| row["name"].as_str().is_some_and(|name| name.ends_with("auto, sorted by hash")));
+    assert_eq!(sorted.count(), levels().len());
+    folder.fails("render balls:1 --reorder size", 2, &["unknown order 'size'; known: none, hash, origin, direction"]);
+}
+
+#[test]
 fn the_comparison_in_all_formats() {
     let folder = Folder::with("a_&_b.obj", SQUARES);
     let compare = |more: &str| folder.run(&format!("compare a_&_b.obj --size 24x24 --repeat 1 --threads 2 {more}"));

@@ -12,6 +12,7 @@ use tracer::Error;
 use tracer::bvh::BuildConfig;
 use tracer::method::{SlabForm, Width};
 use tracer::model::Camera;
+use tracer::sort::Reorder;
 
 /// What the picture shows.
 #[derive(Debug, Clone, Default, Args)]
@@ -51,6 +52,8 @@ pub struct TraceOptions {
     /// other integrators, unless --width or --slab is given]
     #[arg(long, value_name = "METHOD", value_enum)]
     pub method: Option<MethodChoice>,
+    #[command(flatten)]
+    pub reorder: ReorderOption,
     /// Rays per packet: auto, 1, 4, 8 or 16
     #[arg(long, value_name = "RAYS", default_value_t)]
     pub width: Width,
@@ -59,6 +62,14 @@ pub struct TraceOptions {
     pub slab: Slab,
     #[command(flatten)]
     pub threads: ThreadsOption,
+}
+
+#[derive(Debug, Clone, Copy, Default, Args)]
+pub struct ReorderOption {
+    /// Sort rays before they are traced (Garanzha and Loop 2010): none; by hash, the cell of the origin and then the direction; origin, that
+    /// alone; or direction, then origin. The results are the same, the speed is not
+    #[arg(long, value_name = "ORDER", default_value_t)]
+    pub reorder: Reorder,
 }
 
 #[derive(Debug, Clone, Default, Args)]

@@ -3,7 +3,7 @@
 use crate::args::BuildOptions;
 use crate::console::Console;
 use crate::cost::Cost;
-use crate::method::MethodChoice;
+use crate::method::{MethodChoice, reordered};
 use crate::picture::{self, Kind};
 use crate::render::Args;
 use crate::report::{Subject, Written};
@@ -219,6 +219,7 @@ struct Report {
     seed: u64,
     level: String,
     method: String,
+    reorder: &'static str,
     threads: usize,
     generation_ms: f64,
     traversal_ms: f64,
@@ -245,8 +246,10 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         None => Scenery::new(scene, &camera),
     };
     let choice = args.trace.method(MethodChoice::Auto)?;
-    let tree = choice.tree(&work.bvh);
+    let tree = choice.tree(&work.bvh)?;
     let method = choice.over(&work.bvh, &tree, config.level, config.lanes, args.trace.form());
+    let reorder = args.trace.reorder.reorder;
+    let method = reordered(method, &work.bvh, config.level, reorder);
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     let means = Means { method: &*method, cx: &mut cx, observer: None, progress: console };
     let (rendering, samples_before) = args.checkpoint.render(scene, &scenery, camera, &config, means, console)?;
@@ -271,6 +274,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         seed: config.seed,
         level: config.level.to_string(),
         method: choice.name(),
+        reorder: reorder.name(),
         threads: rayon::current_num_threads(),
         generation_ms: ms(times.generation),
         traversal_ms: ms(times.traversal),
@@ -290,7 +294,7 @@ fn text(r: &Report) -> String {
     let (subject, written, rays) = (r.subject.text(), r.written.text(), HumanCount(r.rays));
     let cost = r.cost.as_ref().map(Cost::text).unwrap_or_default();
     let Subject { width, height, .. } = r.subject;
-    let Report { integrator, samples, level, method, threads, .. } = r;
+    let Report { integrator, samples, level, method, reorder, threads, .. } = r;
     let Report { generation_ms, traversal_ms, shading_ms, total_ms, mrays_per_s, .. } = r;
     let before = if r.samples_before > 0 { format!(" ({} before)", r.samples_before) } else { String::new() };
     let share = |part: f64| 100.0 * part / total_ms.max(1e-9);
@@ -301,7 +305,7 @@ fn text(r: &Report) -> String {
     }
     format!(
         "\
-{subject}rendered  {width}x{height} by {integrator}, samples: {samples}{before}; level {level}, method {method}, threads: {threads}
+{subject}rendered  {width}x{height} by {integrator}, samples: {samples}{before}; level {level}, method {method}, reorder {reorder}, threads: {threads}
   generation {generation_ms:>10.2} ms {g:>5.1} %
   traversal  {traversal_ms:>10.2} ms {t:>5.1} %
   shading    {shading_ms:>10.2} ms {s:>5.1} %

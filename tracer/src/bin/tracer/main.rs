@@ -88,7 +88,6 @@ fn first_look(console: &Console) -> Result<ExitCode, Error> {
     let render = render::Args::default();
     pool.install(|| render::picture(&render, &work, console))?;
     console.print("\n")?;
-    let report =
-        compare::measure(&work, method::MethodChoice::Packet, &picture, compare::DEFAULT_REPEAT, &pool, console)?;
+    let report = compare::measure(&work, Default::default(), &picture, compare::DEFAULT_REPEAT, &pool, console)?;
     compare::show(&report, compare::Format::Table, None, console)
 }

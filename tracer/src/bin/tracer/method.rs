@@ -3,12 +3,15 @@
 use clap::ValueEnum;
 use simd::Level;
 use tracer::Error;
-use tracer::bvh::{Bvh, CollapseConfig, WideBvh};
-use tracer::method::{Auto, Method, Order, Packet, Reordering, Single, SlabForm, Traversal, Width};
+use tracer::bvh::{Bvh, CollapseConfig, OctoBvh, OctoConfig, WideBvh};
+use tracer::geometry::Aabb;
+use tracer::method::{Auto, BreadthFirst, Method, Order, Packet, Reordering, Single, SlabForm, Sorted, Traversal, Width};
+use tracer::sort::Reorder;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum MethodChoice {
     /// Packets through the skip-pointer tree, as in the paper of 2003
+    #[default]
     Packet,
     /// The same, near child first
     Ordered,
@@ -28,6 +31,8 @@ pub enum MethodChoice {
     BoulosAdaptive,
     /// The same wherever one is not
     BoulosExact,
+    /// Frusta around packets of sorted rays go through the tree level by level (the paper of 2010)
+    BreadthFirst,
     /// As many rays together as agree: the fastest for any rays, but its tree takes a quarter longer to build
     Auto,
 }
@@ -38,12 +43,13 @@ pub enum Tree {
     Four(WideBvh<4>),
     Eight(WideBvh<8>),
     Sixteen(WideBvh<16>),
+    Octo(OctoBvh),
 }
 
 impl MethodChoice {
     /// Whether the number of rays in a packet can be chosen.
     pub fn has_packets(self) -> bool {
-        matches!(self, Self::Packet | Self::Ordered) || (self.traversal().is_some() && self != Self::BoulosSingle)
+        matches!(self, Self::Packet | Self::Ordered | Self::BreadthFirst) || (self.traversal().is_some() && self != Self::BoulosSingle)
     }
 
     fn traversal(self) -> Option<Traversal> {
@@ -61,7 +67,7 @@ impl MethodChoice {
     /// If options that are for packets alone were given for another method.
     pub fn check(self, width: Width, form: SlabForm) -> Result<(), Error> {
         if !self.has_packets() && width != Width::Auto {
-            let message = "--width is for --method packet, ordered and boulos-simd to boulos-exact: leave it out";
+            let message = "--width is for --method packet, ordered, breadth-first and boulos-simd to boulos-exact: leave it out";
             return Err(Error::Usage(message.into()));
         }
         if !matches!(self, Self::Packet | Self::Ordered) && form != SlabForm::Exact {
@@ -75,14 +81,17 @@ impl MethodChoice {
         self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default()
     }
 
-    pub fn tree(self, bvh: &Bvh) -> Tree {
+    /// # Errors
+    /// If the scene is too large for it.
+    pub fn tree(self, bvh: &Bvh) -> Result<Tree, Error> {
         let config = CollapseConfig::default();
-        match self {
+        Ok(match self {
             Self::Single4 => Tree::Four(bvh.collapse(&config)),
             Self::Single8 | Self::Auto => Tree::Eight(bvh.collapse(&config)),
             Self::Single16 => Tree::Sixteen(bvh.collapse(&config)),
+            Self::BreadthFirst => Tree::Octo(OctoBvh::new(bvh, &OctoConfig::default())?),
             _ => Tree::Binary,
-        }
+        })
     }
 
     /// The method over what [`MethodChoice::tree`] made of `bvh`.
@@ -105,6 +114,16 @@ impl MethodChoice {
             Tree::Eight(tree) if self == Self::Auto => Box::new(Auto::new(tree, level)),
             Tree::Eight(tree) => Box::new(Single::new(tree, level)),
             Tree::Sixteen(tree) => Box::new(Single::new(tree, level)),
+            Tree::Octo(tree) => Box::new(BreadthFirst::new(bvh, tree, level, width)),
         }
     }
+}
+
+/// The same with rays put into order before it.
+pub fn reordered<'a>(method: Box<dyn Method + 'a>, bvh: &Bvh, level: Level, by: Reorder) -> Box<dyn Method + 'a> {
+    if by == Reorder::None {
+        return method;
+    }
+    let bounds = bvh.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds());
+    Box::new(Sorted::new(method, level, &bounds, by))
 }

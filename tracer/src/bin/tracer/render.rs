@@ -5,7 +5,7 @@ use crate::checkpoint::CheckpointOptions;
 use crate::console::Console;
 use crate::environment::EnvironmentOptions;
 use crate::light::{self, LightOptions};
-use crate::method::MethodChoice;
+use crate::method::{MethodChoice, reordered};
 use crate::picture;
 use crate::report::{Subject, Written};
 use crate::workload::{Workload, mrays_per_s, ms};
@@ -62,6 +62,7 @@ struct Report {
     shadows: bool,
     level: String,
     method: String,
+    reorder: &'static str,
     packet: usize,
     threads: usize,
     eye_ms: f64,
@@ -109,8 +110,10 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let (lanes, shadows) = (args.trace.width, args.picture.shadows);
     let settings = Settings { width: size.width, height: size.height, level, lanes, shadows };
     let choice = args.trace.method(MethodChoice::Packet)?;
-    let tree = choice.tree(&work.bvh);
+    let tree = choice.tree(&work.bvh)?;
     let method = choice.over(&work.bvh, &tree, level, lanes, args.trace.form());
+    let reorder = args.trace.reorder.reorder;
+    let method = reordered(method, &work.bvh, level, reorder);
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
 
     console.stage("render", 4);
@@ -137,6 +140,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         shadows,
         level: level.to_string(),
         method: choice.name(),
+        reorder: reorder.name(),
         packet: lanes.lanes(level),
         threads: rayon::current_num_threads(),
         eye_ms,
@@ -165,10 +169,10 @@ fn text(r: &Report) -> String {
     let (subject, written) = (r.subject.text(), r.written.text());
     let Subject { width, height, .. } = r.subject;
     let covered = 100.0 * r.hits as f64 / (width * height) as f64;
-    let Report { level, method, packet, threads, eye_ms, cast_ms, shade_ms, total_ms, mrays_per_s, .. } = r;
+    let Report { level, method, reorder, packet, threads, eye_ms, cast_ms, shade_ms, total_ms, mrays_per_s, .. } = r;
     format!(
         "\
-{subject}rendered  {width}x{height}, level {level}, method {method}, {packet} lanes, threads: {threads}; {covered:.1} % of the picture is covered
+{subject}rendered  {width}x{height}, level {level}, method {method}, reorder {reorder}, {packet} lanes, threads: {threads}; {covered:.1} % of the picture is covered
   eye rays {eye_ms:>9.2} ms
   casting  {cast_ms:>9.2} ms, {mrays_per_s:.2} Mrays/s ({rays} eye{shadows} rays)
   shading  {shade_ms:>9.2} ms

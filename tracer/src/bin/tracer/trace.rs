@@ -2,7 +2,7 @@
 
 use crate::args::{self, BuildOptions, TraceOptions};
 use crate::console::Console;
-use crate::method::MethodChoice;
+use crate::method::{MethodChoice, reordered};
 use crate::npy;
 use crate::workload::{self, median, mrays_per_s, ms};
 use cpu_time::{ProcessTime, ThreadTime};
@@ -72,6 +72,7 @@ struct Report {
     level: String,
     width: usize,
     method: String,
+    reorder: &'static str,
     threads: usize,
 }
 
@@ -101,8 +102,10 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
 fn trace(args: &Args, bvh: &Bvh, rays: &RayBatch, console: &Console) -> Result<Report, Error> {
     let (level, _) = args.trace.level.choose()?;
     let choice = args.trace.method(MethodChoice::Auto)?;
-    let tree = choice.tree(bvh);
+    let tree = choice.tree(bvh)?;
     let method = choice.over(bvh, &tree, level, args.trace.width, args.trace.form());
+    let reorder = args.trace.reorder.reorder;
+    let method = reordered(method, bvh, level, reorder);
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     let (mut hits, mut occluded) = (HitBatch::new(), BitVec::new());
     console.stage("trace", args.repeat.get() as u64);
@@ -140,6 +143,7 @@ fn trace(args: &Args, bvh: &Bvh, rays: &RayBatch, console: &Console) -> Result<R
         level: level.to_string(),
         width: args.trace.width.lanes(level),
         method: choice.name(),
+        reorder: reorder.name(),
         threads,
     })
 }
@@ -169,11 +173,13 @@ impl CpuClock {
 
 fn text(r: &Report, args: &Args) -> String {
     let [rays, hits, triangles] = [r.rays, r.hits, r.triangles].map(|n| HumanCount(n as u64).to_string());
-    let Report { scene, build, build_ms, trace_ms, wall_ms, mrays_per_s, level, method, width, threads, .. } = r;
+    let Report {
+        scene, build, build_ms, trace_ms, wall_ms, mrays_per_s, level, method, reorder, width, threads, ..
+    } = r;
     format!(
         "\
 scene     {scene}, {triangles} triangles; {build} tree built in {build_ms:.0} ms
-traced    {rays} rays, {hits} hit; level {level}, method {method}, {width} lanes, {threads} threads
+traced    {rays} rays, {hits} hit; level {level}, method {method}, reorder {reorder}, {width} lanes, {threads} threads
 time      {trace_ms:.2} ms of CPU, {wall_ms:.2} ms on the clock: {mrays_per_s:.2} Mrays/s
 wrote     {}
 ",

@@ -22,15 +22,12 @@ struct Queue {
 }
 
 impl Queue {
-    fn with_capacity(capacity: usize) -> Self {
-        // Zeroed memory is not touched before it is used.
-        Self { frusta: vec![0; capacity + PADDING], nodes: vec![0; capacity + PADDING], len: 0 }
-    }
-
-    fn reserve(&mut self, capacity: usize) {
-        if self.nodes.len() < capacity + PADDING {
-            self.frusta.resize(capacity + PADDING, 0);
-            self.nodes.resize(capacity + PADDING, 0);
+    /// Room for so many: memory is taken as it is needed.
+    fn reserve(&mut self, elements: usize) {
+        if self.nodes.len() < elements + PADDING {
+            let room = elements.next_power_of_two() + PADDING;
+            self.frusta.resize(room, 0);
+            self.nodes.resize(room, 0);
         }
     }
 
@@ -67,12 +64,12 @@ impl Queues {
     /// For at most so many pairs at a time.
     pub(super) fn with_capacity(capacity: usize) -> Self {
         Self {
-            input: Queue::with_capacity(capacity),
-            output: Queue::with_capacity(capacity),
-            numbers: vec![0; capacity],
-            sums: vec![0; capacity],
-            sorted: vec![0; capacity],
-            bases: vec![0; capacity],
+            input: Queue::default(),
+            output: Queue::default(),
+            numbers: Vec::new(),
+            sums: Vec::new(),
+            sorted: Vec::new(),
+            bases: Vec::new(),
             capacity,
             waiting: Vec::new(),
         }
@@ -96,6 +93,7 @@ impl Queues {
         leaves.clear(frusta.len());
         for first in (0..frusta.len()).step_by(self.capacity) {
             self.input.len = self.capacity.min(frusta.len() - first);
+            self.input.reserve(self.input.len);
             for (i, (frustum, node)) in self.input.frusta.iter_mut().zip(&mut self.input.nodes).enumerate() {
                 if i >= self.input.len {
                     break;
@@ -107,6 +105,7 @@ impl Queues {
                 leaves.append(level, &self.input.frusta[..self.input.len], &self.input.nodes[..self.input.len]);
                 let Some([frusta, nodes]) = self.waiting.pop() else { break };
                 self.input.len = nodes.len();
+                self.input.reserve(nodes.len());
                 self.input.frusta[..nodes.len()].copy_from_slice(&frusta);
                 self.input.nodes[..nodes.len()].copy_from_slice(&nodes);
             }
@@ -125,7 +124,7 @@ impl Queues {
             let len = self.input.len;
             if self.numbers.len() < len {
                 for v in [&mut self.numbers, &mut self.sums, &mut self.sorted, &mut self.bases] {
-                    v.resize(len, 0);
+                    v.resize(len.next_power_of_two(), 0);
                 }
             }
             let step = Step {
@@ -150,9 +149,9 @@ impl Queues {
                     }
                     continue;
                 }
-                // A frustum that has more leaves than there is room for.
-                self.output.reserve(total);
+                // A frustum that comes to more nodes than there shall be room for.
             }
+            self.output.reserve(total);
             if let Some(count) = count {
                 count.steps += len as u64;
                 count.box_tests += children::number(tree, &self.input.nodes[..len]);
@@ -168,7 +167,6 @@ impl Queues {
             lanes::run_eight(level, scatter);
             self.output.len = total;
             std::mem::swap(&mut self.input, &mut self.output);
-            self.output.reserve(self.input.nodes.len() - PADDING);
         }
     }
 }

@@ -10,7 +10,7 @@ fn kinds(len: usize) -> Vec<(&'static str, Vec<u32>)> {
     vec![
         ("random", of(&|_, x| x)),
         ("equal", of(&|_, _| 0xdead_beef)),
-        ("two", of(&|_, x| x % 2 << 31)),
+        ("two", of(&|_, x| (x % 2) << 31)),
         ("low bits", of(&|_, x| x % 300)),
         ("high bits", of(&|_, x| x << 20)),
         ("ascending", of(&|i, _| i as u32)),

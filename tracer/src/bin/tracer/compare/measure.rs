@@ -4,7 +4,7 @@ use super::report::{Paper, Report, Row, Tests};
 use crate::args::{self, PictureOptions};
 use crate::console::Console;
 use crate::machine;
-use crate::method::{MethodChoice, Tree};
+use crate::method::{MethodChoice, Tree, reordered};
 use crate::workload::{Workload, median, mrays_per_s, ms};
 use cpu_time::ThreadTime;
 use rayon::ThreadPool;
@@ -17,12 +17,15 @@ use tracer::method::{Context, Method, Packet, SlabForm, Width};
 use tracer::model::Camera;
 use tracer::progress::Progress;
 use tracer::render::{EyeRays, Frame, Settings};
+use tracer::sort::Reorder;
 use tracer::stats::Counters;
 
 /// A row of the comparison.
 struct Case {
     name: String,
     method: MethodChoice,
+    /// What its rays are sorted by before.
+    reorder: Reorder,
     level: Level,
     width: Width,
     one_thread: Vec<Sample>,
@@ -49,10 +52,10 @@ struct Task<'a> {
     console: &'a Console,
 }
 
-/// Measures every level and width of this CPU; `pool` has all threads.
+/// Measures every level and width of this CPU, by a method after an order of the rays; `pool` has all threads.
 pub fn measure(
     work: &Workload,
-    method: MethodChoice,
+    (method, reorder): (MethodChoice, Reorder),
     options: &PictureOptions,
     repeat: NonZeroUsize,
     pool: &ThreadPool,
@@ -60,10 +63,10 @@ pub fn measure(
 ) -> Result<Report, Error> {
     let load_average = machine::load_average();
     let camera = options.camera.unwrap_or_else(|| work.scene.camera_or_default());
-    let tree = pool.install(|| method.tree(&work.bvh));
+    let tree = pool.install(|| method.tree(&work.bvh))?;
     let task = Task { work, tree, camera, options, console };
     let one = args::pool(NonZeroUsize::new(1))?;
-    let mut cases = cases(method);
+    let mut cases = cases(method, reorder);
     console.stage("compare", (cases.len() * (repeat.get() + 1)) as u64);
     for round in 0..=repeat.get() {
         for case in &mut cases {
@@ -78,7 +81,11 @@ pub fn measure(
             console.advance(1);
         }
     }
-    let tests = if method == MethodChoice::Packet { pool.install(|| task.count())? } else { Vec::new() };
+    let tests = if (method, reorder) == <(MethodChoice, Reorder)>::default() {
+        pool.install(|| task.count())?
+    } else {
+        Vec::new()
+    };
     console.clear();
     Ok(task.report(&cases, tests, pool.current_num_threads(), load_average))
 }
@@ -87,8 +94,8 @@ fn cpu_time() -> Duration {
     ThreadTime::now().as_duration()
 }
 
-/// The three serial rows first, which are packets always, then all levels of this CPU.
-fn cases(method: MethodChoice) -> Vec<Case> {
+/// The three serial rows first, which are packets of rays as they come always, then all levels of this CPU.
+fn cases(method: MethodChoice, reorder: Reorder) -> Vec<Case> {
     let serial = Level::new(Isa::Serial).map(|l| (l, Width::Four));
     let plain = [(Level::SCALAR, Width::One), (Level::SCALAR, Width::Four)];
     let serial = serial.into_iter().chain(plain).map(|(level, width)| Case::new(MethodChoice::Packet, level, width));
@@ -97,7 +104,7 @@ fn cases(method: MethodChoice) -> Vec<Case> {
     let mut cases: Vec<Case> = serial.collect();
     for level in Level::available() {
         for &width in widths {
-            let case = Case::new(method, level, width);
+            let case = Case::new(method, level, width).after(reorder);
             if cases.iter().all(|other| other.name != case.name) {
                 cases.push(case);
             }
@@ -118,7 +125,15 @@ impl Case {
             _ if method.has_packets() => format!("{upper} {}, float{n}", method.name()),
             _ => format!("{upper} {}", method.name()),
         };
-        Self { name, method, level, width, one_thread: Vec::new(), all_threads: Vec::new() }
+        let reorder = Reorder::None;
+        Self { name, method, reorder, level, width, one_thread: Vec::new(), all_threads: Vec::new() }
+    }
+
+    fn after(self, reorder: Reorder) -> Self {
+        match reorder {
+            Reorder::None => self,
+            _ => Self { name: format!("{}, sorted by {reorder}", self.name), reorder, ..self },
+        }
     }
 }
 
@@ -127,8 +142,9 @@ impl Task<'_> {
     fn frame(&self, case: &Case, now: &dyn Fn() -> Duration) -> Result<Sample, Error> {
         let mut cx = Context { counters: None, cancel: Some(self.console.cancel()) };
         // The rows in emulation need no other tree.
-        let tree = if case.method.has_packets() { &Tree::Binary } else { &self.tree };
+        let tree = if case.method == MethodChoice::Packet { &Tree::Binary } else { &self.tree };
         let method = case.method.over(&self.work.bvh, tree, case.level, case.width, SlabForm::Exact);
+        let method = reordered(method, &self.work.bvh, case.level, case.reorder);
         let mut frame = Frame::new(&self.work.scene, &self.work.surfaces, self.camera, self.settings(case));
         let start = now();
         frame.eye_rays();
@@ -230,7 +246,7 @@ fn row(case: &Case, baseline: Option<Sample>, rays: usize) -> Row {
     let differs = |s: &&Sample| baseline.is_some_and(|b| hashes(s) != hashes(&b));
     let shown = one.iter().chain(all).find(differs).or(one.first()).map_or([0; 2], hashes);
     let width = case.width.lanes(case.level);
-    let paper = Paper::of(case.level.isa(), width).filter(|_| case.method == MethodChoice::Packet);
+    let paper = Paper::of(case.level.isa(), width).filter(|_| (case.method, case.reorder) == Default::default());
     Row {
         name: case.name.clone(),
         level: case.level.isa().name(),
@@ -269,7 +285,7 @@ mod tests {
 
     #[test]
     fn serial_rows_come_first_and_none_twice() {
-        let cases = cases(MethodChoice::Packet);
+        let cases = cases(MethodChoice::Packet, Reorder::None);
         let names: Vec<&str> = cases.iter().map(|c| c.name.as_str()).collect();
         if Level::new(Isa::Serial).is_some() {
             assert_eq!(names[..3], ["emulated float4", "f32, one lane", "float4 as LLVM likes"]);

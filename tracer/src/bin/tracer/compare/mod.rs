@@ -7,7 +7,7 @@ mod text;
 
 pub use measure::measure;
 
-use crate::args::{self, BuildOptions, PictureOptions, ThreadsOption};
+use crate::args::{self, BuildOptions, PictureOptions, ReorderOption, ThreadsOption};
 use crate::console::{Console, json};
 use crate::method::MethodChoice;
 use crate::workload::Workload;
@@ -45,6 +45,8 @@ pub struct Args {
     /// How hits are found at all levels; the three rows in emulation are packets always
     #[arg(long, value_name = "METHOD", value_enum, default_value_t = MethodChoice::Packet, help_heading = "Measurement")]
     method: MethodChoice,
+    #[command(flatten, next_help_heading = "Measurement")]
+    reorder: ReorderOption,
     /// Rounds of measurement after one to warm up; medians are reported, so let it be odd
     #[arg(long, value_name = "N", default_value_t = DEFAULT_REPEAT, help_heading = "Measurement")]
     repeat: NonZeroUsize,
@@ -87,7 +89,7 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
     let format = args.format.or_else(|| output.map(Format::of)).unwrap_or(Format::Table);
     let pool = args::pool(args.threads.threads)?;
     let work = pool.install(|| Workload::load(&args.scene, &args.build, console))?;
-    let report = measure(&work, args.method, &args.picture, args.repeat, &pool, console)?;
+    let report = measure(&work, (args.method, args.reorder.reorder), &args.picture, args.repeat, &pool, console)?;
     show(&report, format, output, console)
 }
 
