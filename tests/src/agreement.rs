@@ -6,8 +6,8 @@ use tracer::Scene;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, OctoBvh, OctoConfig, WideBvh};
 use tracer::geometry::{Aabb, Hit, HitBatch, RayBatch, Triangle};
 use tracer::method::{
-    Auto, BitVec, BreadthFirst, Context, Intervals, Limits, Method, Packet, Partition, Reordering, SharedOrigin, Single,
-    SlabForm, Sorted, Traversal, Visit, Width,
+    Auto, BitVec, BreadthFirst, Context, Intervals, Limits, Method, Packet, Partition, Reordering, SharedOrigin,
+    Single, SlabForm, Sorted, Traversal, Visit, Width,
 };
 use tracer::model::Mesh;
 use tracer::progress::Silent;

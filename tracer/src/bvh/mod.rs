@@ -13,8 +13,8 @@ mod wide;
 pub use build::BuildConfig;
 pub use collapse::CollapseConfig;
 pub use node::Node;
-pub use octo::{OctoBvh, OctoConfig};
 pub(crate) use octo::OctoNode;
+pub use octo::{OctoBvh, OctoConfig};
 pub use stats::BvhStats;
 pub use wide::{Child, WideBvh, WideNode};
 

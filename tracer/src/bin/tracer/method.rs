@@ -5,7 +5,9 @@ use simd::Level;
 use tracer::Error;
 use tracer::bvh::{Bvh, CollapseConfig, OctoBvh, OctoConfig, WideBvh};
 use tracer::geometry::Aabb;
-use tracer::method::{Auto, BreadthFirst, Method, Order, Packet, Reordering, Single, SlabForm, Sorted, Traversal, Width};
+use tracer::method::{
+    Auto, BreadthFirst, Method, Order, Packet, Reordering, Single, SlabForm, Sorted, Traversal, Width,
+};
 use tracer::sort::Reorder;
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -49,7 +51,8 @@ pub enum Tree {
 impl MethodChoice {
     /// Whether the number of rays in a packet can be chosen.
     pub fn has_packets(self) -> bool {
-        matches!(self, Self::Packet | Self::Ordered | Self::BreadthFirst) || (self.traversal().is_some() && self != Self::BoulosSingle)
+        matches!(self, Self::Packet | Self::Ordered | Self::BreadthFirst)
+            || (self.traversal().is_some() && self != Self::BoulosSingle)
     }
 
     fn traversal(self) -> Option<Traversal> {
@@ -67,7 +70,8 @@ impl MethodChoice {
     /// If options that are for packets alone were given for another method.
     pub fn check(self, width: Width, form: SlabForm) -> Result<(), Error> {
         if !self.has_packets() && width != Width::Auto {
-            let message = "--width is for --method packet, ordered, breadth-first and boulos-simd to boulos-exact: leave it out";
+            let message =
+                "--width is for --method packet, ordered, breadth-first and boulos-simd to boulos-exact: leave it out";
             return Err(Error::Usage(message.into()));
         }
         if !matches!(self, Self::Packet | Self::Ordered) && form != SlabForm::Exact {

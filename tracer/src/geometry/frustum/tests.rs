@@ -119,9 +119,9 @@ fn no_box_that_a_ray_meets_is_culled() {
             .map(|i| planes(&mut random, &rays[i], scale))
             .filter(|planes| planes.iter().all(|x| x.abs() < 1e18))
             .collect();
-        let bounds = boxes.iter().fold(Aabb::EMPTY, |all, p| {
-            all.union(&Aabb { min: [p[0], p[1], p[2]], max: [p[4], p[5], p[6]] })
-        });
+        let bounds = boxes
+            .iter()
+            .fold(Aabb::EMPTY, |all, p| all.union(&Aabb { min: [p[0], p[1], p[2]], max: [p[4], p[5], p[6]] }));
         let space = Space::new(bounds);
         let (frusta, odd) = frusta_of(Level::best(), &blocks, &space);
         whole += u32::from(frusta.len() == 2 && odd.is_empty());
@@ -129,7 +129,8 @@ fn no_box_that_a_ray_meets_is_culled() {
         for (i, ray) in rays.iter().enumerate() {
             let ready = Packet::of(ray);
             let is_odd = odd.iter().any(|&(block, lanes)| block as usize == i / 16 && lanes >> (i % 16) & 1 != 0);
-            let members: Vec<&Frustum> = frusta.iter().filter(|f| f.members.of(&ready, i % 16, space.largest)).collect();
+            let members: Vec<&Frustum> =
+                frusta.iter().filter(|f| f.members.of(&ready, i % 16, space.largest)).collect();
             assert_eq!(members.len(), usize::from(ready.valid && !is_odd), "each ray in one frustum: {ray:?}");
             for planes in &boxes {
                 let reach = random.between(0.0, 2.0) * scale;
@@ -145,7 +146,10 @@ fn no_box_that_a_ray_meets_is_culled() {
                 }
                 if ray_meets(&ready, planes, reach) {
                     let part = part_meets(Level::best(), frustum, &blocks[i / 16], &space, reach, planes);
-                    assert!(part[i % 16 / 4], "{ray:?} meets {planes:?} before {reach}, a part of {frustum:?} does not");
+                    assert!(
+                        part[i % 16 / 4],
+                        "{ray:?} meets {planes:?} before {reach}, a part of {frustum:?} does not"
+                    );
                 }
             }
         }

@@ -40,7 +40,8 @@ impl Lanes for Build<'_> {
             while rest != 0 {
                 // From a cut to the next.
                 let after = rest & (rest - 1);
-                let lanes = (u16::MAX << rest.trailing_zeros()) ^ if after == 0 { 0 } else { u16::MAX << after.trailing_zeros() };
+                let lanes = (u16::MAX << rest.trailing_zeros())
+                    ^ if after == 0 { 0 } else { u16::MAX << after.trailing_zeros() };
                 let survey = Survey::new::<F>(blocks, lanes, space, &mut frusta.odd, begin);
                 survey.frusta::<F>(blocks, space, &mut frusta.all);
                 rest = after;

@@ -151,12 +151,7 @@ impl<'a> BreadthFirst<'a> {
     ///
     /// # Errors
     /// [`Error::Cancelled`] when the context's flag was raised; `occluded` is then of no use.
-    pub fn any_in_stages(
-        &self,
-        rays: &RayBatch,
-        occluded: &mut BitVec,
-        cx: &mut Context<'_>,
-    ) -> Result<Stages, Error> {
+    pub fn any_in_stages(&self, rays: &RayBatch, occluded: &mut BitVec, cx: &mut Context<'_>) -> Result<Stages, Error> {
         let Some((mut sorter, packets, begin)) = self.sorted(rays) else {
             return self.trace::<Any>(rays.blocks(), self.packets(rays).runs(), occluded.resize(rays.len()), cx);
         };

@@ -122,12 +122,7 @@ impl BreadthFirst<'_> {
         Ok(stages)
     }
 
-    fn portion<Q: Query>(
-        &self,
-        portion: Portion<Q::Block>,
-        scratch: &mut Scratch,
-        count: bool,
-    ) -> (Stages, Counters) {
+    fn portion<Q: Query>(&self, portion: Portion<Q::Block>, scratch: &mut Scratch, count: bool) -> (Stages, Counters) {
         let Self { bvh, tree, ref space, level, .. } = *self;
         let Portion { rays, runs, results } = portion;
         let Scratch { frusta, queues, leaves } = scratch;

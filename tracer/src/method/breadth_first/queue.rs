@@ -3,10 +3,10 @@
 
 use super::children::{self, Children, LEAF};
 use super::leaves::Leaves;
-use crate::sort::exclusive_scan;
 use crate::bvh::OctoBvh;
 use crate::geometry::frustum::Frustum;
 use crate::lanes::{self, Lanes};
+use crate::sort::exclusive_scan;
 use crate::stats;
 use simd::{Float, Integer, Level, Vector};
 
@@ -113,13 +113,7 @@ impl Queues {
     }
 
     /// Takes the pairs of the input down to the leaves, or the first of them, while the others wait.
-    fn to_leaves(
-        &mut self,
-        level: Level,
-        tree: &OctoBvh,
-        frusta: &[Frustum],
-        count: &mut Option<&mut stats::Frusta>,
-    ) {
+    fn to_leaves(&mut self, level: Level, tree: &OctoBvh, frusta: &[Frustum], count: &mut Option<&mut stats::Frusta>) {
         loop {
             let len = self.input.len;
             if self.numbers.len() < len {

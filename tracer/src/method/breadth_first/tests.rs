@@ -27,7 +27,8 @@ fn setup(mesh: &Mesh, config: &BuildConfig, rays: RayBatch) -> Setup {
 /// Rays that nothing orders, then some that go together, then some that are not ordinary.
 fn all_kinds(random: &mut Random, mesh: &Mesh) -> RayBatch {
     let mut rays = random::rays(random, mesh, 700);
-    let side_by_side = (0..600).map(|i| Ray::new([2.0, 0.5, 0.3], [-1.0, (i % 30) as f32 / 30.0 - 0.5, i as f32 / 300.0 - 1.0]));
+    let side_by_side =
+        (0..600).map(|i| Ray::new([2.0, 0.5, 0.3], [-1.0, (i % 30) as f32 / 30.0 - 0.5, i as f32 / 300.0 - 1.0]));
     rays.extend(side_by_side);
     let unusual = (0..40).map(|i| {
         let org = random.point(1.5);
