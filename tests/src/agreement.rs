@@ -3,15 +3,15 @@
 use crate::brute_force;
 use simd::{Isa, Level};
 use tracer::Scene;
-use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh};
+use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, OctoBvh, OctoConfig, WideBvh};
 use tracer::geometry::{Aabb, Hit, HitBatch, RayBatch, Triangle};
 use tracer::method::{
-    Auto, BitVec, Context, DivideConquer, DivideLimits, Filtering, Intervals, Limits, Method, Packet, Partition,
-    Reordering, SharedOrigin, Single, SlabForm, Sorted, Traversal, TriangleBoxes, Width,
+    Auto, BitVec, BreadthFirst, Context, DivideConquer, DivideLimits, Filtering, Intervals, Limits, Method, Packet,
+    Partition, Reordering, SharedOrigin, Single, SlabForm, Sorted, Traversal, TriangleBoxes, Visit, Width,
 };
 use tracer::model::Mesh;
 use tracer::progress::Silent;
-use tracer::sort::Reorder;
+use tracer::sort::{RayHash, Reorder};
 
 /// The trees that methods need over a mesh.
 #[derive(Debug)]
@@ -22,6 +22,9 @@ pub struct Trees {
     eight: WideBvh<8>,
     sixteen: WideBvh<16>,
     boxes: TriangleBoxes,
+    octo: OctoBvh,
+    /// The same with two children a node and larger leaves.
+    halves: OctoBvh,
 }
 
 impl Trees {
@@ -45,7 +48,9 @@ impl Trees {
         let config = CollapseConfig::default();
         let (four, eight, sixteen) = (binary.collapse(&config), binary.collapse(&config), binary.collapse(&config));
         let boxes = TriangleBoxes::new(mesh).expect("a valid mesh");
-        Self { name, binary, four, eight, sixteen, boxes }
+        let octo = |config| OctoBvh::new(&binary, &config).expect("few nodes");
+        let (octo, halves) = (octo(OctoConfig::default()), octo(OctoConfig { levels: 1, max_leaf: 20 }));
+        Self { name, binary, four, eight, sixteen, boxes, octo, halves }
     }
 }
 
@@ -90,6 +95,7 @@ pub fn check(what: &str, trees: &Trees, levels: &[Level], rays: &RayBatch, expec
             same(&divide, &format!("{width}"));
             let limits = DivideLimits { few_rays: 0, few_triangles: 1, ..DivideLimits::default() };
             same(&divide.with_limits(limits).with_filtering(Filtering::Places), &format!("{width}, by places"));
+            check_frusta(trees, level, width, &same);
         }
     }
 }
@@ -112,6 +118,25 @@ fn check_reordering(bvh: &Bvh, level: Level, width: Width, same: &dyn Fn(&dyn Me
         same(&often.clone().with_intervals(Intervals::Loose), "8, loose");
         same(&often.with_partition(Partition::InPlace), "8, in place");
     }
+}
+
+fn check_frusta(trees: &Trees, level: Level, width: Width, same: &dyn Fn(&dyn Method, &str)) {
+    // Emulated levels have one lane at any width.
+    if matches!(level.isa(), Isa::Serial | Isa::Scalar) && width != Width::Eight {
+        return;
+    }
+    let method = BreadthFirst::new(&trees.binary, &trees.octo, level, width);
+    same(&method, &format!("{width}"));
+    same(&method.clone().with_sort(None), &format!("{width}, not sorted"));
+    if width != Width::Eight {
+        return;
+    }
+    same(&method.clone().with_packet(16).with_queue(5), "8, small packets and queues");
+    same(&method.clone().with_visit(Visit::DepthFirst), "8, depth first");
+    let hash = RayHash::with_cell(&trees.octo.bounds(), Reorder::Origin, 0.1);
+    let halves = BreadthFirst::new(&trees.binary, &trees.halves, level, width).with_sort(Some(hash));
+    same(&halves, "8, two children a node");
+    same(&halves.with_packet(1024).with_sort(None).with_queue(1), "8, two children a node, large packets");
 }
 
 /// Checks that watertight scenes over trees of two builders find the same, at all levels, in batches and ray by ray.

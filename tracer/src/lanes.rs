@@ -80,6 +80,50 @@ pub(crate) fn run<J: Lanes>(level: Level, lanes: usize, job: J) -> J::Output {
     if lanes == 1 { job.run::<f32>() } else { level.run(AtWidth { lanes, job }) }
 }
 
+/// [`run`] for functions of which it is known that emulated levels are no use: there with plain `f32`, whatever the number of lanes. The bits are
+/// the same.
+pub(crate) fn run_plain_if_emulated<J: Lanes>(level: Level, lanes: usize, job: J) -> J::Output {
+    if lanes == 1 { plain(job) } else { level.run(AtWidthOrPlain { lanes, job }) }
+}
+
+struct AtWidthOrPlain<J> {
+    lanes: usize,
+    job: J,
+}
+
+impl<J: Lanes> Kernel for AtWidthOrPlain<J> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> J::Output {
+        if const { matches!(S::LEVEL.isa(), Isa::Serial | Isa::Scalar) } {
+            plain(self.job)
+        } else {
+            AtWidth { lanes: self.lanes, job: self.job }.run::<S>()
+        }
+    }
+}
+
+/// Runs `job` with vectors of eight lanes, at emulated levels with plain `f32`.
+pub(crate) fn run_eight<J: Lanes>(level: Level, job: J) -> J::Output {
+    level.run(Eight(job))
+}
+
+struct Eight<J>(J);
+
+impl<J: Lanes> Kernel for Eight<J> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> J::Output {
+        if const { matches!(S::LEVEL.isa(), Isa::Serial | Isa::Scalar) } {
+            plain(self.0)
+        } else {
+            self.0.run::<S::Float8>()
+        }
+    }
+}
+
 /// Runs `job` with the registers of the level; with plain `f32` for [`Width::One`].
 pub(crate) fn run_native<J: Lanes>(level: Level, width: Width, job: J) -> J::Output {
     if width == Width::One { job.run::<f32>() } else { level.run(Native(job)) }

@@ -15,6 +15,8 @@ pub struct Counters {
     pub triangle_hits: u64,
     /// What [`Reordering`](crate::method::Reordering) counts beside.
     pub reordering: Reordering,
+    /// What [`BreadthFirst`](crate::method::BreadthFirst) counts beside.
+    pub frusta: Frusta,
 }
 
 impl Add for Counters {
@@ -26,6 +28,41 @@ impl Add for Counters {
             triangle_tests: self.triangle_tests + o.triangle_tests,
             triangle_hits: self.triangle_hits + o.triangle_hits,
             reordering: self.reordering + o.reordering,
+            frusta: self.frusta + o.frusta,
+        }
+    }
+}
+
+/// What Garanzha and Loop 2010 count (section 5.1 and table 1).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Frusta {
+    /// "FS": frusta.
+    pub frusta: u64,
+    /// "LS": leaves captured by all frusta together.
+    pub leaves: u64,
+    /// Elements of all queues together: nodes that frusta came to, leaves once for each level that they are carried down.
+    pub steps: u64,
+    /// Tests of a frustum against a box; [`Counters::box_tests`] are those of rays.
+    pub box_tests: u64,
+    /// Groups of rays, as many as a vector has lanes, that a frustum was taken apart into ("ray warps").
+    pub groups: u64,
+    /// Rays in all groups: divided by the groups, the average number of rays in one.
+    pub rays: u64,
+    /// Times that a queue was too short and the batch of frusta was split.
+    pub splits: u64,
+}
+
+impl Add for Frusta {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        Self {
+            frusta: self.frusta + o.frusta,
+            leaves: self.leaves + o.leaves,
+            steps: self.steps + o.steps,
+            box_tests: self.box_tests + o.box_tests,
+            groups: self.groups + o.groups,
+            rays: self.rays + o.rays,
+            splits: self.splits + o.splits,
         }
     }
 }
@@ -104,6 +141,7 @@ pub(crate) trait Count: Send {
     fn box_test(&mut self) {}
     fn triangle_test(&mut self) {}
     fn triangle_hit(&mut self) {}
+    fn group(&mut self, _rays: usize) {}
     fn total(&self) -> Counters {
         Counters::default()
     }
@@ -129,6 +167,11 @@ impl Count for Counters {
     #[inline(always)]
     fn triangle_hit(&mut self) {
         self.triangle_hits += 1;
+    }
+    #[inline(always)]
+    fn group(&mut self, rays: usize) {
+        self.frusta.groups += 1;
+        self.frusta.rays += rays as u64;
     }
     fn total(&self) -> Counters {
         *self

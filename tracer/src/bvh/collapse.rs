@@ -110,7 +110,7 @@ pub(super) fn collapse<const N: usize>(
 
 /// The nodes, with at most two children each: where there are more ([insertion](super::build::insertion) makes such), all but the
 /// first get a node of their own above them.
-fn in_twos(nodes: Cow<[Node]>) -> Cow<[Node]> {
+pub(super) fn in_twos(nodes: Cow<[Node]>) -> Cow<[Node]> {
     // The box of the new node, and where the subtree ends, by the node before which it comes.
     let mut new = BTreeMap::new();
     let mut siblings = Vec::new();

@@ -4,6 +4,7 @@ pub mod build;
 mod collapse;
 mod epo;
 mod node;
+pub(crate) mod octo;
 mod refit;
 mod stats;
 mod validate;
@@ -12,6 +13,8 @@ mod wide;
 pub use build::BuildConfig;
 pub use collapse::CollapseConfig;
 pub use node::Node;
+pub(crate) use octo::OctoNode;
+pub use octo::{OctoBvh, OctoConfig};
 pub use stats::BvhStats;
 pub use wide::{Child, WideBvh, WideNode};
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod aabb;
 pub(crate) mod cull;
+pub(crate) mod frustum;
 mod hit;
 pub(crate) mod moller_trumbore;
 pub(crate) mod nearest;

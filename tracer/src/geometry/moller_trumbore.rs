@@ -33,6 +33,29 @@ pub(crate) fn intersect<F: Float, O: Origin<F>>(
     Some(inside.candidate(ray, interval(&planes(triangle), ray, origin, near, -infinity, infinity)))
 }
 
+/// [`intersect`] of two triangles: neither has to wait for the branch on the other. The second is `None` if it is not hit, and so is the first.
+#[inline(always)]
+pub(crate) fn intersect_two<F: Float, O: Origin<F>>(
+    triangles: &[Triangle; 2],
+    ray: &Packet<F>,
+    origin: O,
+    near: Near,
+) -> [Option<Candidate<F>>; 2] {
+    let (a, b) = (Inside::find(&triangles[0], ray, origin), Inside::find(&triangles[1], ray, origin));
+    let mut found = [None, None];
+    if (a.mask | b.mask).none() {
+        return found;
+    }
+    let infinity = F::splat(f32::INFINITY);
+    if a.mask.any() {
+        found[0] = Some(a.candidate(ray, interval(&planes(&triangles[0]), ray, origin, near, -infinity, infinity)));
+    }
+    if b.mask.any() {
+        found[1] = Some(b.candidate(ray, interval(&planes(&triangles[1]), ray, origin, near, -infinity, infinity)));
+    }
+    found
+}
+
 /// [`intersect`] for rays that point into different octants.
 #[inline(always)]
 pub(crate) fn intersect_mixed<F: Float>(triangle: &Triangle, ray: &Packet<F>) -> Option<Candidate<F>> {
@@ -71,15 +94,28 @@ struct Inside<F: Float> {
 impl<F: Float> Inside<F> {
     #[inline(always)]
     fn of_triangle<O: Origin<F>>(triangle: &Triangle, ray: &Packet<F>, origin: O) -> Option<Self> {
+        let inside = Self::find(triangle, ray, origin);
+        if inside.mask.none() { None } else { Some(inside) }
+    }
+
+    #[inline(always)]
+    fn find<O: Origin<F>>(triangle: &Triangle, ray: &Packet<F>, origin: O) -> Self {
         let lanes = |[x, y, z]: [f32; 3]| Vec3::<f32> { x, y, z };
         let normal = lanes(triangle.e2).cross(lanes(triangle.e1));
         let edges = [Vec3::splat(triangle.e1), Vec3::splat(triangle.e2)];
-        Self::test(ray.dir, origin.seen_from(ray, triangle.v0), edges, Vec3::splat([normal.x, normal.y, normal.z]))
+        Self::of(ray.dir, origin.seen_from(ray, triangle.v0), edges, Vec3::splat([normal.x, normal.y, normal.z]))
     }
 
-    /// From `o = origin - v0` and `normal = e2 x e1`. `None` when no lane is hit: the division is left to those that are.
+    /// `None` when no lane is hit: the division is left to those that are.
     #[inline(always)]
-    fn test(dir: Vec3<F>, o: Vec3<F>, [e1, e2]: [Vec3<F>; 2], normal: Vec3<F>) -> Option<Self> {
+    fn test(dir: Vec3<F>, o: Vec3<F>, edges: [Vec3<F>; 2], normal: Vec3<F>) -> Option<Self> {
+        let inside = Self::of(dir, o, edges, normal);
+        if inside.mask.none() { None } else { Some(inside) }
+    }
+
+    /// From `o = origin - v0` and `normal = e2 x e1`.
+    #[inline(always)]
+    fn of(dir: Vec3<F>, o: Vec3<F>, [e1, e2]: [Vec3<F>; 2], normal: Vec3<F>) -> Self {
         let det = dir.dot(normal);
         let moment = o.cross(dir);
         let u = e2.dot(moment).mul_sign(det);
@@ -88,7 +124,7 @@ impl<F: Float> Inside<F> {
         let zero = F::splat(0.0);
         // A determinant that is not a normal number has no finite reciprocal.
         let mask = zero.le(u) & minus_v.le(zero) & (u - minus_v).le(size) & F::splat(f32::MIN_POSITIVE).le(size);
-        if mask.none() { None } else { Some(Self { mask, u, minus_v, distance: -o.dot(normal), det }) }
+        Self { mask, u, minus_v, distance: -o.dot(normal), det }
     }
 
     /// The hit, given the ray's interval in the triangle's box.

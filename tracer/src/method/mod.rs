@@ -1,6 +1,7 @@
 //! Ways of finding hits, all behind [`Method`]: rays in, hits out, the same bits from every one of them.
 
 mod auto;
+mod breadth_first;
 pub(crate) mod chosen;
 mod divide_conquer;
 pub(crate) mod nearest;
@@ -16,6 +17,7 @@ mod watertight;
 
 pub use crate::lanes::Width;
 pub use auto::{Auto, Limits};
+pub use breadth_first::{BreadthFirst, Stages, Visit};
 pub use divide_conquer::{DivideConquer, DivideLimits, Filtering, Phases, Sharing, TriangleBoxes};
 pub use packet::{Order, Packet, SharedOrigin, SlabForm};
 pub use reordering::{Intervals, Partition, Reordering, Traversal};

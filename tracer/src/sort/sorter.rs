@@ -58,6 +58,11 @@ impl RaySorter {
         &self.order
     }
 
+    /// Each hash and the place of its first ray in the order that was found last.
+    pub fn cells(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.sort.cells()
+    }
+
     /// How many runs of rays were sorted: see [`RaySort::runs`].
     #[must_use]
     pub fn runs(&self) -> usize {

@@ -81,7 +81,8 @@ fn every_order_of_rays_finds_the_same() {
     let report = folder.json("compare balls:1 --size 64x48 --repeat 1 --format json --method auto --reorder hash");
     assert_eq!(report["all_identical"], true);
     let rows = report["rows"].as_array().expect("rows");
-    let sorted = rows.iter().filter(|row| row["name"].as_str().is_some_and(|name| name.ends_with("auto, sorted by hash")));
+    let sorted =
+        rows.iter().filter(|row| row["name"].as_str().is_some_and(|name| name.ends_with("auto, sorted by hash")));
     assert_eq!(sorted.count(), levels().len());
     folder.fails("render balls:1 --reorder size", 2, &["unknown order 'size'; known: none, hash, origin, direction"]);
 }

@@ -252,7 +252,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         None => Scenery::new(scene, &camera),
     };
     let choice = args.trace.method(MethodChoice::Auto)?;
-    let tree = choice.tree(&work.bvh);
+    let tree = choice.tree(&work.bvh)?;
     let method = choice.over(&work.bvh, &tree, config.level, config.lanes, args.trace.form());
     let reorder = args.trace.reorder.reorder;
     let method = reordered(method, &work.bvh, config.level, reorder);

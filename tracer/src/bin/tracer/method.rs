@@ -3,10 +3,11 @@
 use clap::ValueEnum;
 use simd::Level;
 use tracer::Error;
-use tracer::bvh::{Bvh, CollapseConfig, WideBvh};
+use tracer::bvh::{Bvh, CollapseConfig, OctoBvh, OctoConfig, WideBvh};
 use tracer::geometry::Aabb;
 use tracer::method::{
-    Auto, DivideConquer, Method, Order, Packet, Reordering, Single, SlabForm, Sorted, Traversal, TriangleBoxes, Width,
+    Auto, BreadthFirst, DivideConquer, Method, Order, Packet, Reordering, Single, SlabForm, Sorted, Traversal,
+    TriangleBoxes, Width,
 };
 use tracer::sort::Reorder;
 
@@ -33,6 +34,8 @@ pub enum MethodChoice {
     BoulosAdaptive,
     /// The same wherever one is not
     BoulosExact,
+    /// Frusta around packets of sorted rays go through the tree level by level (the paper of 2010)
+    BreadthFirst,
     /// No tree: triangles are divided while all rays are traced, the method of the paper of 2012. (A tree is built all the same, and not used)
     DivideConquer,
     /// As many rays together as agree: the fastest for any rays, but its tree takes a quarter longer to build
@@ -47,12 +50,13 @@ pub enum Tree {
     Sixteen(WideBvh<16>),
     /// None: the triangles alone.
     Boxes(TriangleBoxes),
+    Octo(OctoBvh),
 }
 
 impl MethodChoice {
     /// Whether the number of rays in a packet can be chosen.
     pub fn has_packets(self) -> bool {
-        matches!(self, Self::Packet | Self::Ordered | Self::DivideConquer)
+        matches!(self, Self::Packet | Self::Ordered | Self::BreadthFirst | Self::DivideConquer)
             || (self.is_reordering() && self != Self::BoulosSingle)
     }
 
@@ -76,8 +80,7 @@ impl MethodChoice {
     /// If options that are for packets alone were given for another method.
     pub fn check(self, width: Width, form: SlabForm) -> Result<(), Error> {
         if !self.has_packets() && width != Width::Auto {
-            let message =
-                "--width is for --method packet, ordered, boulos-simd to boulos-exact and divide-conquer: leave it out";
+            let message = "--width is for --method packet, ordered, boulos-simd to -exact, breadth-first and divide-conquer: leave it out";
             return Err(Error::Usage(message.into()));
         }
         if !matches!(self, Self::Packet | Self::Ordered) && form != SlabForm::Exact {
@@ -91,15 +94,18 @@ impl MethodChoice {
         self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default()
     }
 
-    pub fn tree(self, bvh: &Bvh) -> Tree {
+    /// # Errors
+    /// If the scene is too large for it.
+    pub fn tree(self, bvh: &Bvh) -> Result<Tree, Error> {
         let config = CollapseConfig::default();
-        match self {
+        Ok(match self {
             Self::Single4 => Tree::Four(bvh.collapse(&config)),
             Self::Single8 | Self::Auto => Tree::Eight(bvh.collapse(&config)),
             Self::Single16 => Tree::Sixteen(bvh.collapse(&config)),
             Self::DivideConquer => Tree::Boxes(TriangleBoxes::of_triangles(&bvh.triangles)),
+            Self::BreadthFirst => Tree::Octo(OctoBvh::new(bvh, &OctoConfig::default())?),
             _ => Tree::Binary,
-        }
+        })
     }
 
     /// The method over what [`MethodChoice::tree`] made of `bvh`.
@@ -123,6 +129,7 @@ impl MethodChoice {
             Tree::Eight(tree) => Box::new(Single::new(tree, level)),
             Tree::Sixteen(tree) => Box::new(Single::new(tree, level)),
             Tree::Boxes(triangles) => Box::new(DivideConquer::new(triangles, level, width)),
+            Tree::Octo(tree) => Box::new(BreadthFirst::new(bvh, tree, level, width)),
         }
     }
 }

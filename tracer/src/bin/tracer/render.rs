@@ -110,7 +110,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let (lanes, shadows) = (args.trace.width, args.picture.shadows);
     let settings = Settings { width: size.width, height: size.height, level, lanes, shadows };
     let choice = args.trace.method(MethodChoice::Packet)?;
-    let tree = choice.tree(&work.bvh);
+    let tree = choice.tree(&work.bvh)?;
     let method = choice.over(&work.bvh, &tree, level, lanes, args.trace.form());
     let reorder = args.trace.reorder.reorder;
     let method = reordered(method, &work.bvh, level, reorder);

@@ -102,7 +102,7 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
 fn trace(args: &Args, bvh: &Bvh, rays: &RayBatch, console: &Console) -> Result<Report, Error> {
     let (level, _) = args.trace.level.choose()?;
     let choice = args.trace.method(MethodChoice::Auto)?;
-    let tree = choice.tree(bvh);
+    let tree = choice.tree(bvh)?;
     let method = choice.over(bvh, &tree, level, args.trace.width, args.trace.form());
     let reorder = args.trace.reorder.reorder;
     let method = reordered(method, bvh, level, reorder);

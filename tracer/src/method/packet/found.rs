@@ -5,14 +5,22 @@ use crate::geometry::{Hit, HitBlock, Packet as Rays};
 use simd::{Float, Mask, Vector};
 
 /// Closest or any.
-pub(super) trait Query {
+pub(in crate::method) trait Query {
     /// Results of a block of rays.
-    type Block: Send;
+    type Block: Send + Clone;
     type Found<F: Float>: Found<F, Block = Self::Block>;
+    /// No ray hits anything.
+    const NOTHING: Self::Block;
+
+    /// Puts down what one ray hit.
+    fn put(block: &mut Self::Block, lane: usize, hit: &Hit);
+
+    /// The result of one ray, which lies in a lane of a block, in another place, where nothing was put down so far.
+    fn copy(from: (&Self::Block, usize), to: (&mut Self::Block, usize));
 }
 
 /// What a query knows of each lane so far.
-pub(super) trait Found<F: Float> {
+pub(in crate::method) trait Found<F: Float> {
     type Block;
     fn new(ray: &Rays<F>) -> Self;
     /// How far along its ray a hit still matters.
@@ -23,13 +31,27 @@ pub(super) trait Found<F: Float> {
     fn store(self, block: &mut Self::Block, chunk: usize);
 }
 
-pub(super) struct Closest;
+pub(in crate::method) struct Closest;
 impl Query for Closest {
     type Block = HitBlock;
     type Found<F: Float> = ClosestHit<F>;
+    const NOTHING: HitBlock = HitBlock::MISS;
+
+    #[inline(always)]
+    fn put(block: &mut HitBlock, lane: usize, hit: &Hit) {
+        block.t.0[lane] = hit.t;
+        block.u.0[lane] = hit.u;
+        block.v.0[lane] = hit.v;
+        block.primitive.0[lane] = hit.primitive;
+    }
+
+    #[inline(always)]
+    fn copy((from, i): (&HitBlock, usize), (to, k): (&mut HitBlock, usize)) {
+        Self::put(to, k, &from.get(i));
+    }
 }
 
-pub(super) struct ClosestHit<F: Float> {
+pub(in crate::method) struct ClosestHit<F: Float> {
     t: F,
     u: F,
     v: F,
@@ -77,13 +99,24 @@ impl<F: Float> Found<F> for ClosestHit<F> {
     }
 }
 
-pub(super) struct Any;
+pub(in crate::method) struct Any;
 impl Query for Any {
     type Block = u16;
     type Found<F: Float> = Occluded<F>;
+    const NOTHING: u16 = 0;
+
+    #[inline(always)]
+    fn put(block: &mut u16, lane: usize, _: &Hit) {
+        *block |= 1 << lane;
+    }
+
+    #[inline(always)]
+    fn copy((from, i): (&u16, usize), (to, k): (&mut u16, usize)) {
+        *to |= (from >> i & 1) << k;
+    }
 }
 
-pub(super) struct Occluded<F: Float> {
+pub(in crate::method) struct Occluded<F: Float> {
     /// Minus infinity where something was hit: such a lane meets no box any more.
     reach: F,
     hit: F::Mask,

@@ -1,6 +1,6 @@
 //! Packets of rays through the skip-pointer tree: Geimer & Müller 2003, section 3.3.
 
-mod found;
+pub(super) mod found;
 mod ordered;
 
 use super::{BitVec, Context, Method, PORTION, in_portions};

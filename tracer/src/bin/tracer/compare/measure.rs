@@ -63,7 +63,7 @@ pub fn measure(
 ) -> Result<Report, Error> {
     let load_average = machine::load_average();
     let camera = options.camera.unwrap_or_else(|| work.scene.camera_or_default());
-    let tree = pool.install(|| method.tree(&work.bvh));
+    let tree = pool.install(|| method.tree(&work.bvh))?;
     let task = Task { work, tree, camera, options, console };
     let one = args::pool(NonZeroUsize::new(1))?;
     let mut cases = cases(method, reorder);
