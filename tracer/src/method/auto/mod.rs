@@ -30,7 +30,7 @@ pub struct Limits {
     /// The same for whether such a block hits anything.
     pub mixed_any: u32,
     /// Rays that are not coherent are traced alone from the start if the box around the origins of a block is larger than this
-    /// part of the scene (sums of the sides).
+    /// part of the scene (sums of the sides), and blocks are not traced together if that of one of them is.
     pub scatter: f32,
 }
 
@@ -120,7 +120,7 @@ impl<Q: Query, C: Count> Kernel for Trace<'_, Q, C> {
         if is_serial::<S>() {
             return Level::SCALAR.run(self);
         }
-        let mut tile = Tile::<Q>::new(self.bvh, self.limits);
+        let mut tile = Tile::<Q>::new(self.bvh, self.limits, self.row.is_some());
         let tiles = self.row.map_or(self.rays.len().div_ceil(BLOCKS), |row| row.div_ceil(16));
         if self.row.is_some() {
             self.results.fill(Q::NOTHING);
