@@ -84,9 +84,9 @@ fn measure(args: &Args, console: &Console) -> Result<Report, Error> {
         for samples in [1, 16] {
             report.sorts.push(keys::sorts(&scene.shadow_keys(width, height, samples)?, repeat));
         }
-        let rays = scene.diffuse_rays(if args.quick { 64 } else { 1024 }, 2)?;
+        let rays = scene.diffuse_rays(if args.quick { 64 } else { 2048 }, 2)?;
         // All at once, and as a renderer with less memory would have them.
-        let batches = [rays.len(), 1 << 16].into_iter().filter(|&batch| batch > 0 && batch <= rays.len());
+        let batches = [rays.len(), 1 << 18, 1 << 16].into_iter().filter(|&batch| batch > 0 && batch <= rays.len());
         for batch in batches {
             report.reorders.extend(reorder::measure(&scene, &rays, batch, repeat)?);
         }

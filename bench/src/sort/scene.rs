@@ -60,7 +60,7 @@ impl Scene {
         let mut found = RayBatch::new();
         let mut observer = |depth: usize, query: Query, rays: &RayBatch| {
             if depth == reflections as usize && query == Query::Closest {
-                found = rays.clone();
+                found.extend(rays.iter());
             }
         };
         let mut cx = Context::default();
