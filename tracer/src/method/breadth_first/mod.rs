@@ -102,7 +102,7 @@ impl<'a> BreadthFirst<'a> {
         Self { packet: rays.clamp(16, 1 << 15).div_ceil(16), ..self }
     }
 
-    /// With queues of at most so many elements for each thread (24 bytes each, taken as they are needed), by default [`BreadthFirst::QUEUE`]. When they do not fit the batch of frusta is split in two, again and
+    /// With queues of at most so many elements for each thread (32 bytes each, taken as they are needed), by default [`BreadthFirst::QUEUE`]. When they do not fit the batch of frusta is split in two, again and
     /// again; for a single frustum queues grow.
     #[must_use]
     pub fn with_queue(self, elements: usize) -> Self {

@@ -65,6 +65,7 @@ impl Clone for Pool {
     }
 }
 
+/// What the stages of a portion hand on.
 #[derive(Debug)]
 struct Scratch {
     frusta: Frusta,
