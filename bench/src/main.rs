@@ -2,11 +2,14 @@
 //!
 //! ```text
 //! cargo run --release -p bench -- boulos
+//! cargo run --release -p bench -- afra
 //! ```
 
+mod afra;
 mod boulos;
 mod console;
 mod machine;
+mod report;
 
 use clap::{Parser, Subcommand};
 use console::Console;
@@ -24,12 +27,17 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Boulos(boulos::Args),
+    Afra(afra::Args),
 }
 
 fn main() -> ExitCode {
-    let Cli { command: Command::Boulos(args) } = Cli::parse();
+    let Cli { command } = Cli::parse();
     let console = Console::new();
-    let Err(error) = boulos::run(&args, &console) else { return ExitCode::SUCCESS };
+    let done = match command {
+        Command::Boulos(args) => boulos::run(&args, &console),
+        Command::Afra(args) => afra::run(&args, &console),
+    };
+    let Err(error) = done else { return ExitCode::SUCCESS };
     console.clear();
     eprintln!("error: {error}");
     match error {
