@@ -1,7 +1,7 @@
 //! What is known of the machine.
 
 use serde::Serialize;
-use std::fs;
+use std::{fmt, fs};
 
 /// Where something is measured.
 #[derive(Debug, Clone, Serialize)]
@@ -31,6 +31,17 @@ impl Machine {
             cpu,
             threads: std::thread::available_parallelism().map_or(1, usize::from),
             load_average: load.and_then(|text| text.split_whitespace().next()?.parse().ok()),
+        }
+    }
+}
+
+/// For the head of a report.
+impl fmt::Display for Machine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, {} hardware threads; load average ", self.cpu, self.threads)?;
+        match self.load_average {
+            Some(load) => write!(f, "{load:.2} at the start"),
+            None => f.write_str("unknown"),
         }
     }
 }

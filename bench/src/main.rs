@@ -2,12 +2,17 @@
 //!
 //! ```text
 //! cargo run --release -p bench -- boulos
+//! cargo run --release -p bench -- afra
+//! cargo run --release -p bench -- garanzha
 //! cargo run --release -p bench -- sort
 //! ```
 
+mod afra;
 mod boulos;
 mod console;
+mod garanzha;
 mod machine;
+mod report;
 mod sort;
 
 use clap::{Parser, Subcommand};
@@ -26,13 +31,18 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Boulos(boulos::Args),
+    Afra(afra::Args),
+    Garanzha(garanzha::Args),
     Sort(sort::Args),
 }
 
 fn main() -> ExitCode {
+    let Cli { command } = Cli::parse();
     let console = Console::new();
-    let done = match Cli::parse().command {
+    let done = match command {
         Command::Boulos(args) => boulos::run(&args, &console),
+        Command::Afra(args) => afra::run(&args, &console),
+        Command::Garanzha(args) => garanzha::run(&args, &console),
         Command::Sort(args) => sort::run(&args, &console),
     };
     let Err(error) = done else { return ExitCode::SUCCESS };

@@ -203,8 +203,10 @@ pub(crate) trait SimdLanes {
     fn run<S: Simd, F: Float>(self) -> Self::Output;
 }
 
-/// Runs `job` at a level with vectors of `lanes` lanes: 1 (plain `f32`), 4, 8 or 16.
+/// Runs `job` at a level with vectors of `lanes` lanes: 4, 8 or 16, or 1, which is plain `f32` in plain Rust. So it is at emulated levels, whatever the number of
+/// lanes: vectors become many times as much code there. The bits are the same.
 pub(crate) fn run_simd<J: SimdLanes>(level: Level, lanes: usize, job: J) -> J::Output {
+    let level = if lanes == 1 { Level::SCALAR } else { level };
     level.run(SimdAtWidth { lanes, job })
 }
 
@@ -218,12 +220,39 @@ impl<J: SimdLanes> Kernel for SimdAtWidth<J> {
 
     #[inline(always)]
     fn run<S: Simd>(self) -> J::Output {
+        if const { is_serial::<S>() } {
+            return Level::SCALAR.run(self);
+        }
+        if const { matches!(S::LEVEL.isa(), Isa::Scalar) } {
+            return self.job.run::<S, f32>();
+        }
         match self.lanes {
-            1 => self.job.run::<S, f32>(),
             4 => self.job.run::<S, S::Float4>(),
-            _ if is_serial::<S>() => Level::SCALAR.run(self),
             8 => self.job.run::<S, S::Float8>(),
             _ => self.job.run::<S, S::Float16>(),
+        }
+    }
+}
+
+/// [`run_simd`] with the registers of the level.
+pub(crate) fn run_simd_native<J: SimdLanes>(level: Level, job: J) -> J::Output {
+    level.run(SimdNative(job))
+}
+
+struct SimdNative<J>(J);
+
+impl<J: SimdLanes> Kernel for SimdNative<J> {
+    type Output = J::Output;
+
+    #[inline(always)]
+    fn run<S: Simd>(self) -> J::Output {
+        if const { is_serial::<S>() } {
+            return Level::SCALAR.run(self);
+        }
+        if const { matches!(S::LEVEL.isa(), Isa::Scalar) } {
+            self.0.run::<S, f32>()
+        } else {
+            self.0.run::<S, S::Float>()
         }
     }
 }

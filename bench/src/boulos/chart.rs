@@ -1,46 +1,22 @@
 //! Figures 6 to 8 in SVG.
 
 use super::counts::{Counts, WIDTHS};
-use plotters::coord::types::RangedCoordf64;
-use plotters::element::DashedPathElement;
+use crate::report::chart::{self, Area, COLORS, Chart, Drawn, Line, SIZE, builder, legend, svg};
 use plotters::prelude::*;
 use tracer::Error;
 use tracer::method::{Traversal, Width};
 
-const SIZE: (u32, u32) = (960, 560);
-/// Distinct to the colour-blind too.
-const COLORS: [RGBColor; 3] = [RGBColor(0, 114, 178), RGBColor(204, 90, 0), RGBColor(0, 158, 115)];
 /// What figures 7 and 8 compare.
 const COMPARED: [(Traversal, &str); 3] =
     [(Traversal::Simd, "SIMD"), (Traversal::Adaptive, "adaptive"), (Traversal::Exact, "exact")];
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
-
 /// Names of the files and what is in them.
-pub fn all(counts: &Counts) -> Result<Vec<(&'static str, String)>, Error> {
+pub fn all(counts: &Counts) -> Result<Vec<(String, String)>, Error> {
     Ok(vec![
-        ("boulos_figure6.svg", svg(|area| figure_6(counts, area))?),
-        ("boulos_figure7.svg", svg(|area| figure_7(counts, area))?),
-        ("boulos_figure8.svg", svg(|area| figure_8(counts, area))?),
+        ("boulos_figure6.svg".into(), svg(|area| figure_6(counts, area))?),
+        ("boulos_figure7.svg".into(), svg(|area| figure_7(counts, area))?),
+        ("boulos_figure8.svg".into(), svg(|area| figure_8(counts, area))?),
     ])
-}
-
-fn svg(draw: impl FnOnce(&Area<'_>) -> Drawn) -> Result<String, Error> {
-    let mut text = String::new();
-    let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-    let drawn = area.fill(&WHITE).and_then(|()| draw(&area)).and_then(|()| area.present());
-    drop(area);
-    drawn.map_err(|e| Error::Geometry(format!("the figure cannot be drawn: {e}")))?;
-    Ok(text)
-}
-
-/// A line of a chart.
-struct Line {
-    name: String,
-    color: RGBColor,
-    dashed: bool,
-    points: Vec<(f64, f64)>,
 }
 
 fn figure_6(counts: &Counts, area: &Area<'_>) -> Drawn {
@@ -75,20 +51,8 @@ fn draw_lines(area: &Area<'_>, title: &str, y_title: &str, lines: &[Line]) -> Dr
     let low = if low < 0.0 { low - room } else { 0.0 };
     let mut chart = builder(area, title).build_cartesian_2d(0.0..end, low..high + room)?;
     grid(&mut chart, "depth of the node", y_title, 3)?;
-    for line in lines {
-        let style = line.color.stroke_width(2);
-        let legend = move |(x, y)| PathElement::new([(x, y), (x + 22, y)], style);
-        let points = line.points.iter().copied();
-        if line.dashed {
-            chart
-                .draw_series(DashedLineSeries::new(points, 6, 4, style))?
-                .label(&line.name)
-                .legend(move |(x, y)| DashedPathElement::new([(x, y), (x + 22, y)], 6, 4, style));
-        } else {
-            chart.draw_series(LineSeries::new(points, style))?.label(&line.name).legend(legend);
-        }
-    }
-    legend_of(&mut chart)
+    chart::lines(&mut chart, lines)?;
+    legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
 
 fn figure_7(counts: &Counts, area: &Area<'_>) -> Drawn {
@@ -135,18 +99,10 @@ fn figure_7(counts: &Counts, area: &Area<'_>) -> Drawn {
         chart.draw_series(WIDTHS.iter().enumerate().map(|(group, width)| {
             Text::new(format!("width {width}"), (group as f64 + 0.4, 1.2 * high), large.clone())
         }))?;
-        legend_of(&mut chart)?;
+        legend(&mut chart, SeriesLabelPosition::UpperRight)?;
     }
     Ok(())
 }
-
-fn builder<'a, 'b>(area: &'a Area<'b>, title: &str) -> ChartBuilder<'a, 'b, SVGBackend<'b>> {
-    let mut builder = ChartBuilder::on(area);
-    builder.caption(title, ("sans-serif", 20)).margin(14).x_label_area_size(44).y_label_area_size(64);
-    builder
-}
-
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 fn grid(chart: &mut Chart<'_, '_>, x: &str, y: &str, digits: usize) -> Drawn {
     let short = |value: &f64| format!("{value:.digits$}").trim_end_matches('0').trim_end_matches('.').to_owned();
@@ -158,16 +114,6 @@ fn grid(chart: &mut Chart<'_, '_>, x: &str, y: &str, digits: usize) -> Drawn {
         .y_label_formatter(&short)
         .label_style(("sans-serif", 15))
         .light_line_style(WHITE)
-        .draw()
-}
-
-fn legend_of<'a, 'b: 'a>(chart: &mut Chart<'a, 'b>) -> Drawn {
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font(("sans-serif", 15))
         .draw()
 }
 

@@ -1,8 +1,8 @@
 //! Seconds per frame: the same rays by all methods in turn, and the rest of the frame.
 
-use super::clock::{Timed, timed};
 use super::scenes::{Name, Scene, Surface};
 use crate::console::Console;
+use crate::report::clock::{Timed, median, timed};
 use serde::Serialize;
 use simd::{Isa, Level};
 use std::collections::hash_map::DefaultHasher;
@@ -400,24 +400,9 @@ pub fn whole(work: &Work<'_>, setup: Setup, task: &Task<'_>) -> Result<Vec<Whole
     Ok(columns.into_iter().zip(parts).map(whole).collect())
 }
 
-/// The middle of a number of measurements; the mean of the middle two when their number is even.
-fn median(times: &[f64]) -> f64 {
-    let mut times = times.to_vec();
-    times.sort_by(f64::total_cmp);
-    let n = times.len();
-    if n == 0 { 0.0 } else { 0.5 * (times[(n - 1) / 2] + times[n / 2]) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn medians() {
-        assert_eq!(median(&[]), 0.0);
-        assert_eq!(median(&[3.0, 1.0, 50.0]), 3.0);
-        assert_eq!(median(&[4.0, 1.0, 2.0, 9.0]), 3.0);
-    }
 
     /// Sums up to the bounces asked for, medians over rounds, the rest of the frame by whether shading is grouped.
     #[test]

@@ -2,36 +2,8 @@
 
 use super::counts::{Counts, WIDTHS};
 use super::frames::{Column, Frames};
-use serde::Serialize;
+use crate::report::goals::{Bound, Goal};
 use tracer::method::{Traversal, Width};
-
-/// A ratio with its bound.
-#[derive(Debug, Clone, Serialize)]
-pub struct Goal {
-    pub what: String,
-    pub bound: Bound,
-    /// What was found, and of what; none where nothing was counted.
-    pub values: Vec<(&'static str, Option<f64>)>,
-}
-
-/// A bound.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub enum Bound {
-    AtLeast(f64),
-    AtMost(f64),
-}
-
-impl Bound {
-    /// `reached` or `missed`.
-    pub fn verdict(self, value: Option<f64>) -> &'static str {
-        match (self, value) {
-            (Self::AtLeast(bound), Some(value)) if value >= bound => "reached",
-            (Self::AtMost(bound), Some(value)) if value <= bound => "reached",
-            (_, Some(_)) => "missed",
-            (_, None) => "not counted",
-        }
-    }
-}
 
 /// Of the conference room's diffuse frames: ratios of times at each level and width.
 pub fn of_times(frames: &Frames) -> Vec<Goal> {
@@ -44,8 +16,8 @@ pub fn of_times(frames: &Frames) -> Vec<Goal> {
             what: format!("adaptive over {}, {}, {} bounces", over.title(), frames.setup, row.bounces),
             bound: Bound::AtLeast(least),
             values: vec![
-                ("frame", Some(other.frame / adaptive.frame)),
-                ("traversal", Some(other.traversal / adaptive.traversal)),
+                ("frame".into(), Some(other.frame / adaptive.frame)),
+                ("traversal".into(), Some(other.traversal / adaptive.traversal)),
             ],
         });
     };
@@ -62,7 +34,7 @@ pub fn of_times(frames: &Frames) -> Vec<Goal> {
     goals.push(Goal {
         what: format!("adaptive over {}, {}, eye rays", Column::Packet.title(), frames.setup),
         bound: Bound::AtLeast(0.95),
-        values: vec![("traversal", Some(eye(Column::Packet) / eye(Column::Reordered)))],
+        values: vec![("traversal".into(), Some(eye(Column::Packet) / eye(Column::Reordered)))],
     });
     goals
 }
@@ -72,7 +44,8 @@ pub fn of_counts(counts: &Counts) -> Vec<Goal> {
     let line = |width, traversal, line: usize| counts.row(width, traversal).map_or(0.0, |row| row.per_ray[line]);
     let ratio = |a: f64, b: f64| (b > 0.0).then(|| a / b);
     let mut goals = Vec::new();
-    let mut goal = |what: String, bound, name, value| goals.push(Goal { what, bound, values: vec![(name, value)] });
+    let mut goal =
+        |what: String, bound, name: &str, value| goals.push(Goal { what, bound, values: vec![(name.into(), value)] });
     for (width, most) in [(Width::Four, 0.35), (Width::Sixteen, 0.17)] {
         let boxes = |traversal| line(width, traversal, 0);
         let value = ratio(boxes(Traversal::Adaptive), boxes(Traversal::Single));
@@ -86,23 +59,4 @@ pub fn of_counts(counts: &Counts) -> Vec<Goal> {
     let utilization = counts.row(Width::Sixteen, Traversal::Adaptive).and_then(|row| row.utilization());
     goal("lanes at work in box tests, adaptive, width 16".into(), Bound::AtLeast(0.45), "part", utilization);
     goals
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn verdicts() {
-        for (bound, value, expected) in [
-            (Bound::AtLeast(1.5), Some(1.5), "reached"),
-            (Bound::AtLeast(1.5), Some(1.49), "missed"),
-            (Bound::AtMost(0.4), Some(0.4), "reached"),
-            (Bound::AtMost(0.4), Some(0.41), "missed"),
-            (Bound::AtMost(0.4), Some(f64::NAN), "missed"),
-            (Bound::AtMost(0.4), None, "not counted"),
-        ] {
-            assert_eq!(bound.verdict(value), expected, "{bound:?} {value:?}");
-        }
-    }
 }

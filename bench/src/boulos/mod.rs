@@ -1,7 +1,6 @@
 //! Tables 1 to 4 and figures 6 to 8 of Boulos, Wald and Benthin 2008, "Adaptive Ray Packet Reordering", measured anew.
 
 mod chart;
-pub mod clock;
 mod counts;
 mod frames;
 mod goals;
@@ -11,16 +10,15 @@ mod text;
 
 use crate::console::Console;
 use crate::machine::Machine;
+use crate::report::Folder;
+use crate::report::goals::Goal;
 use counts::Counts;
 use frames::{Frames, Setup, Task, Whole, Work};
-use goals::Goal;
 use scenes::{Name, Scene, Surface};
 use serde::Serialize;
-use std::fs;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tracer::Error;
-use tracer::output::write_atomically;
 use tracer::progress::Progress;
 
 /// Adaptive Ray Packet Reordering (Boulos, Wald and Benthin 2008): tables 1 to 4, figures 6 to 8
@@ -80,25 +78,12 @@ struct Report {
 pub fn run(args: &Args, console: &Console) -> Result<(), Error> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(|e| Error::Usage(format!("there is no thread to measure on: {e}")))?;
-    let folder =
-        args.output.as_deref().unwrap_or(Path::new(if args.quick { "target/boulos" } else { "bench/reports" }));
-    // Before the long work, so that it is not in vain.
-    fs::create_dir_all(folder).map_err(|source| Error::Io { action: "create", path: folder.into(), source })?;
+    let folder = Folder::open(args.output.as_deref(), args.quick, "boulos")?;
     let report = pool.install(|| measure(args, console))?;
     console.check()?;
     let markdown = text::markdown(&report);
-    println!("{markdown}");
-    let json = serde_json::to_string_pretty(&report);
-    let json = json.map_err(|e| Error::Geometry(format!("the report cannot be written as JSON: {e}")))?;
-    let mut files = vec![("boulos.md", markdown), ("boulos.json", json + "\n")];
-    if let Some(counts) = &report.counts {
-        files.extend(chart::all(counts)?);
-    }
-    for (name, text) in files {
-        write_atomically(&folder.join(name), |out| out.write_all(text.as_bytes()))?;
-    }
-    eprintln!("wrote {}", folder.join("boulos.md").display());
-    Ok(())
+    let figures = report.counts.as_ref().map_or(Ok(Vec::new()), chart::all)?;
+    folder.write("boulos", markdown, &report, figures)
 }
 
 fn measure(args: &Args, console: &Console) -> Result<Report, Error> {

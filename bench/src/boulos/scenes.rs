@@ -2,12 +2,13 @@
 
 use super::paper;
 use crate::console::Console;
+use crate::report::scenes::{self, View};
 use clap::ValueEnum;
 use serde::Serialize;
 use std::fmt;
 use tracer::Error;
 use tracer::bvh::{BuildConfig, Bvh, CollapseConfig, WideBvh, build::binned};
-use tracer::model::{Camera, Material, Mesh, Model, Reflection, builtin, obj};
+use tracer::model::{Camera, Material, Mesh, Model, Reflection};
 use tracer::progress::Progress;
 use tracer::render::Scenery;
 
@@ -92,43 +93,26 @@ impl Scene {
     /// Reads it and builds its tree; none when its file is missing, which is said on standard output.
     pub fn open(name: Name, box_cost: f32, console: &Console) -> Result<Option<Self>, Error> {
         console.stage(&format!("{name}: reading"), 0);
-        let (file, label, camera, lamp) = match name {
-            Name::Sponza => (
-                Some("crytek_sponza"),
-                "Crytek's atrium in place of Dabrovic's of 76 k",
-                view([-60.96, 86.0, 10.16], [0.826, -0.438, -0.356], [0.0, 1.0, 0.0], 43.6),
-                // Above the opening of the roof, which stays open around it.
-                Lamp { up: 1, height: 140.0, from: [-60.0, -25.0], to: [50.0, 18.0] },
-            ),
-            Name::Fairy => (
-                None,
-                "a stand-in for the paper's Fairy of 174 k, which is not to be had: the built-in scene tree:9, open and of uneven depth",
-                view([4.5, 0.4, 2.0], [-4.5, -0.4, -0.5], [0.0, 0.0, 1.0], 45.0),
-                Lamp { up: 2, height: 8.0, from: [-4.0, -4.0], to: [4.0, 4.0] },
-            ),
-            Name::Conference => (
-                Some("conference"),
-                "the LBL conference room (Anat Grynberg and Greg Ward), as the paper's of 282 k",
-                view([6.9742, 8.7685, 4.6396], [0.7818, 0.5406, -0.3107], [0.0, 0.0, 1.0], 73.74),
-                // Almost the full ceiling, which is at 8.9.
-                Lamp { up: 2, height: 8.8, from: [1.0, 1.0], to: [34.5, 21.0] },
-            ),
+        let (view, lamp) = match name {
+            // Above the opening of the roof, which stays open around it.
+            Name::Sponza => {
+                (scenes::sponza(console)?, Lamp { up: 1, height: 140.0, from: [-60.0, -25.0], to: [50.0, 18.0] })
+            }
+            Name::Fairy => (scenes::fairy()?, Lamp { up: 2, height: 8.0, from: [-4.0, -4.0], to: [4.0, 4.0] }),
+            // Almost the full ceiling, which is at 8.9.
+            Name::Conference => {
+                (scenes::conference(console)?, Lamp { up: 2, height: 8.8, from: [1.0, 1.0], to: [34.5, 21.0] })
+            }
         };
-        let mut model = match file {
-            None => builtin("tree:9").unwrap_or_else(|| Err(Error::Usage("there is no built-in tree".into())))?,
-            Some(file) => match ::tests::real_scene(file) {
-                Some(path) => obj::read(&path, console)?.0,
-                None => return Ok(None),
-            },
-        };
-        let triangles = model.mesh.triangles.len();
+        let Some(view) = view else { return Ok(None) };
+        let what = view.describe();
+        let View { mut model, camera, .. } = view;
         hang(&lamp, &mut model.mesh);
         model.lights.clear();
         let config = binned::Config { traversal_cost: box_cost, ..binned::Config::default() };
         let bvh = Bvh::build(&model.mesh, &BuildConfig::Binned(config), console)?;
         let wide = bvh.collapse(&CollapseConfig::default());
         console.clear();
-        let what = format!("{triangles} triangles, {label}; camera {camera}");
         Ok(Some(Self { name, what, model, camera, bvh, wide }))
     }
 
@@ -139,10 +123,6 @@ impl Scene {
         self.model.validate()?;
         Ok(Scenery::new(&self.model, &self.camera))
     }
-}
-
-fn view(eye: [f32; 3], forward: [f32; 3], up: [f32; 3], fov: f32) -> Camera {
-    Camera { eye, at: [eye[0] + forward[0], eye[1] + forward[1], eye[2] + forward[2]], up, fov }
 }
 
 /// Adds the lamp's two triangles, which are of material 1; all others are of material 0.
@@ -162,6 +142,7 @@ fn hang(lamp: &Lamp, mesh: &mut Mesh) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use tracer::model::builtin;
 
     /// Flat at its height, its corners those given, with materials for all.
     #[test]

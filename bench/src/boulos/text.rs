@@ -3,9 +3,10 @@
 use super::Report;
 use super::counts::{CountRow, WIDTHS};
 use super::frames::{Column, Frames, Whole};
-use super::goals::{Bound, Goal};
 use super::paper;
 use super::scenes::{Name, Scene, Surface};
+use crate::report::goals;
+use crate::report::text::table;
 use std::fmt::Write;
 use tracer::method::Width;
 
@@ -41,7 +42,7 @@ pub fn markdown(report: &Report) -> String {
     }
     if !report.goals.is_empty() {
         text += "\n## What must be reached\n\nConference, diffuse. Frames have what all methods share, so their ratio is the stricter one.\n\n";
-        text += &goal_table(&report.goals);
+        text += &goals::table(&report.goals);
     }
     text
 }
@@ -53,12 +54,11 @@ fn head(report: &Report) -> String {
         text += "**A smoke run: its figures mean nothing.**\n\n";
     }
     let machine = &report.machine;
-    let load = machine.load_average.map_or("unknown".into(), |load| format!("{load:.2}"));
     let (size, repeat) = (report.size, report.repeat);
     let setups: Vec<String> = report.setups.iter().map(ToString::to_string).collect();
     let _ = write!(
         text,
-        "- machine: {}, {} hardware threads; one was used; load average {load} at the start\n\
+        "- machine: {machine}; one was used\n\
          - levels and widths: {}; the first for all scenes, the others for the conference room's diffuse frames\n\
          - picture: {size}x{size}, 1 sample per pixel, one area light, one light sample per hit; no roulette, no attenuation\n\
          - measured: CPU time of one thread. Every method is given the same batches of rays, those of a real frame, one method after the other on \
@@ -69,8 +69,6 @@ fn head(report: &Report) -> String {
          - surfaces: all of one kind; glossy ones follow their coat's lobe alone, its exponent {} (the paper does not name its own)\n\
          - tree: surface area heuristic over bins, a box test at {} of a triangle test{}\n\
          - paper: SSE on one core of a 3.0 GHz Clovertown; its traversals, scenes, cameras and renderer differ from these\n",
-        machine.cpu,
-        machine.threads,
         setups.join("; "),
         Surface::SHININESS,
         report.box_cost,
@@ -162,48 +160,6 @@ fn whole_table(whole: &[Whole]) -> String {
     table(&["method", "level", "seconds", "Mrays/s", "traversal", "shading", "generation"], &rows.collect::<Vec<_>>())
 }
 
-fn goal_table(goals: &[Goal]) -> String {
-    let rows = goals.iter().flat_map(|goal| {
-        goal.values.iter().map(|&(name, value)| {
-            let (sign, bound) = match goal.bound {
-                Bound::AtLeast(bound) => ("≥", bound),
-                Bound::AtMost(bound) => ("≤", bound),
-            };
-            let found = value.map_or("–".into(), |value| format!("{value:.2}"));
-            let verdict = goal.bound.verdict(value).to_owned();
-            vec![goal.what.clone(), name.into(), format!("{sign} {bound}"), found, verdict]
-        })
-    });
-    table(&["ratio", "of", "bound", "found", ""], &rows.collect::<Vec<_>>())
-}
-
-/// A table in Markdown whose columns line up; numbers to the right.
-fn table(header: &[&str], rows: &[Vec<String>]) -> String {
-    let width = |column: usize| {
-        let cells = rows.iter().map(|row| row[column].chars().count());
-        cells.chain([header[column].chars().count(), 3]).max().unwrap_or(3)
-    };
-    let widths: Vec<usize> = (0..header.len()).map(width).collect();
-    let mut text = String::new();
-    let mut line = |cells: &[&str]| {
-        for (i, (cell, &width)) in cells.iter().zip(&widths).enumerate() {
-            let _ = if i == 0 { write!(text, "| {cell:<width$} ") } else { write!(text, "| {cell:>width$} ") };
-        }
-        text += "|\n";
-    };
-    line(header);
-    let rules: Vec<String> = widths
-        .iter()
-        .enumerate()
-        .map(|(i, &width)| if i == 0 { "-".repeat(width) } else { "-".repeat(width - 1) + ":" })
-        .collect();
-    line(&rules.iter().map(String::as_str).collect::<Vec<_>>());
-    for row in rows {
-        line(&row.iter().map(String::as_str).collect::<Vec<_>>());
-    }
-    text
-}
-
 /// Names of scenes in the order of the paper.
 pub fn scenes(names: &[Name]) -> Vec<Name> {
     let all = [Name::Sponza, Name::Fairy, Name::Conference];
@@ -213,14 +169,6 @@ pub fn scenes(names: &[Name]) -> Vec<Name> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn tables_line_up() {
-        let rows = [vec!["a".into(), "1".into()], vec!["≥ bc".into(), "22222".into()]];
-        let expected = "| name | value |\n| ---- | ----: |\n| a    |     1 |\n| ≥ bc | 22222 |\n";
-        assert_eq!(table(&["name", "value"], &rows), expected);
-        assert_eq!(table(&["x"], &[]), "| x   |\n| --- |\n");
-    }
 
     #[test]
     fn the_paper_as_printed() {

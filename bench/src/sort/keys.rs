@@ -1,7 +1,7 @@
 //! Times of scans and sorts.
 
 use super::median;
-use crate::boulos::clock::timed;
+use crate::report::clock::timed;
 use rdst::{RadixKey, RadixSort as _};
 use serde::Serialize;
 use simd::Level;

@@ -39,22 +39,32 @@ pub struct Args {
     json: bool,
 }
 
-/// All that was found.
+/// What was found, where and how.
 #[derive(Debug, Serialize)]
-pub struct Report {
+struct Report {
     quick: bool,
     machine: Machine,
     repeat: usize,
-    scans: Vec<ScanTimes>,
-    sorts: Vec<SortTimes>,
-    reorders: Vec<ReorderTimes>,
+    #[serde(flatten)]
+    sorting: Sorting,
+}
+
+/// All that was found.
+#[derive(Debug, Default, Serialize)]
+pub struct Sorting {
+    pub scans: Vec<ScanTimes>,
+    pub sorts: Vec<SortTimes>,
+    pub reorders: Vec<ReorderTimes>,
 }
 
 /// Measures and prints, on one thread.
 pub fn run(args: &Args, console: &Console) -> Result<(), Error> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.map_err(|e| Error::Usage(format!("there is no thread to measure on: {e}")))?;
-    let report = pool.install(|| measure(args, console))?;
+    let repeat = args.repeat.map_or(if args.quick { 1 } else { 5 }, NonZeroUsize::get);
+    let machine = Machine::now();
+    let sorting = pool.install(|| measure(&args.scenes, args.quick, repeat, console))?;
+    let report = Report { quick: args.quick, machine, repeat, sorting };
     if args.json {
         let json = serde_json::to_string_pretty(&report);
         println!("{}", json.map_err(|e| Error::Geometry(format!("the report cannot be written as JSON: {e}")))?);
@@ -64,34 +74,31 @@ pub fn run(args: &Args, console: &Console) -> Result<(), Error> {
     Ok(())
 }
 
-fn measure(args: &Args, console: &Console) -> Result<Report, Error> {
-    let repeat = args.repeat.map_or(if args.quick { 1 } else { 5 }, NonZeroUsize::get);
+/// Measures on the current pool: on built-in scenes if none are named.
+pub fn measure(scenes: &[String], quick: bool, repeat: usize, console: &Console) -> Result<Sorting, Error> {
     // The paper's 1024 x 768 pixels, and the same with 16 samples each.
-    let (width, height) = if args.quick { (64, 48) } else { (1024, 768) };
+    let (width, height) = if quick { (64, 48) } else { (1024, 768) };
     let (few, many) = (width * height, 16 * width * height);
-    let mut report = Report {
-        quick: args.quick,
-        machine: Machine::now(),
-        repeat,
+    let mut found = Sorting {
         scans: [few, many].map(|number| keys::scans(number, repeat)).into(),
         sorts: [few, many].map(|number| keys::sorts(&Keys::random(number), repeat)).into(),
         reorders: Vec::new(),
     };
-    let names = if args.quick { ["balls:2", "tree:4"] } else { ["balls:4", "hairball"] };
-    let names = if args.scenes.is_empty() { names.map(String::from).into() } else { args.scenes.clone() };
+    let names = if quick { ["balls:2", "tree:4"] } else { ["balls:4", "hairball"] };
+    let names = if scenes.is_empty() { names.map(String::from).into() } else { scenes.to_vec() };
     for name in names {
         let scene = Scene::open(&name, console)?;
         for samples in [1, 16] {
-            report.sorts.push(keys::sorts(&scene.shadow_keys(width, height, samples)?, repeat));
+            found.sorts.push(keys::sorts(&scene.shadow_keys(width, height, samples)?, repeat));
         }
-        let rays = scene.diffuse_rays(if args.quick { 64 } else { 2048 }, 2)?;
+        let rays = scene.diffuse_rays(if quick { 64 } else { 2048 }, 2)?;
         // All at once, and as a renderer with less memory would have them.
         let batches = [rays.len(), 1 << 18, 1 << 16].into_iter().filter(|&batch| batch > 0 && batch <= rays.len());
         for batch in batches {
-            report.reorders.extend(reorder::measure(&scene, &rays, batch, repeat)?);
+            found.reorders.extend(reorder::measure(&scene, &rays, batch, repeat)?);
         }
     }
-    Ok(report)
+    Ok(found)
 }
 
 fn markdown(report: &Report) -> String {
@@ -102,10 +109,17 @@ fn markdown(report: &Report) -> String {
     }
     let load = load_average.map_or(String::new(), |load| format!(", load average {load}"));
     let _ = writeln!(text, "{cpu}{load}; one thread, medians of {} rounds, milliseconds of CPU time.\n", report.repeat);
-    text += "## Scans beside a copy of as many bytes\n\n\
+    text + &tables(&report.sorting)
+}
+
+/// The tables of a report.
+pub fn tables(found: &Sorting) -> String {
+    let mut text = String::from(
+        "\n## Scans beside a copy of as many bytes\n\n\
              | elements | copy | exclusive scan | of the copy | segmented scan | head flags | compaction |\n\
-             |---:|---:|---:|---:|---:|---:|---:|\n";
-    for t in &report.scans {
+             |---:|---:|---:|---:|---:|---:|---:|\n",
+    );
+    for t in &found.scans {
         let ScanTimes { number, copy, exclusive, segmented, heads, compact } = t;
         let ratio = exclusive / copy;
         let _ = writeln!(
@@ -117,7 +131,7 @@ fn markdown(report: &Report) -> String {
              Paper: 12.6 M keys of soft shadows in 40 ms with compression, 80 ms without (at least 1.8 times as fast).\n\n\
              | keys | number | a run | radix | rdst | voracious | std | best other / radix | four copies / radix | compressed | radix / compressed |\n\
              |---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
-    for t in &report.sorts {
+    for t in &found.sorts {
         let SortTimes { keys, number, run, copy, radix, rdst, voracious, std, compressed, same } = t;
         let (other, copies, gain) = (rdst.min(*voracious).min(*std) / radix, 4.0 * copy / radix, radix / compressed);
         let wrong = if *same { "" } else { " NOT THE SAME ORDER" };
@@ -131,7 +145,7 @@ fn markdown(report: &Report) -> String {
              Charged: hash, sort, gathering rays and putting hits back are part of the time.\n\n\
              | scene | rays | method | by | cell | a run | order | gather | trace | back | unsorted | sort charged | not charged |\n\
              |---|---:|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
-    for t in &report.reorders {
+    for t in &found.reorders {
         let ReorderTimes { scene, rays, method, by, cell, run, order, gather, trace, back, unsorted, same } = t;
         let (charged, not) = (unsorted / t.charged(), unsorted / trace);
         let wrong = if *same { "" } else { " NOT THE SAME HITS" };

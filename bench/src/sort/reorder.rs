@@ -2,7 +2,7 @@
 
 use super::median;
 use super::scene::Scene;
-use crate::boulos::clock::timed;
+use crate::report::clock::timed;
 use serde::Serialize;
 use simd::Level;
 use tracer::Error;

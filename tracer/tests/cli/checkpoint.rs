@@ -66,7 +66,11 @@ fn checkpoints_of_no_use() {
     bytes[good.len() / 2] ^= 1;
     folder.write("film", bytes);
     folder.fails(&format!("{command} --samples 4"), 1, &["checksum"]);
-    folder.fails(&format!("{command} -o film"), 2, &["--output and --checkpoint name one file"]);
+    folder.fails(
+        "render s.obj --integrator ao --checkpoint p.png -o p.png",
+        2,
+        &["--output and --checkpoint name one file"],
+    );
     folder.fails("render s.obj --checkpoint f", 2, &["--checkpoint", "--integrator"]);
     folder.fails("render s.obj --integrator ao --checkpoint no/such/folder", 1, &["no/such/folder"]);
     folder.fails("render s.obj --integrator ao --checkpoint-every 3", 2, &["--checkpoint"]);

@@ -56,13 +56,12 @@ pub enum Tree {
 impl MethodChoice {
     /// Whether the number of rays in a packet can be chosen.
     pub fn has_packets(self) -> bool {
-        matches!(self, Self::Packet | Self::Ordered | Self::BreadthFirst | Self::DivideConquer)
-            || (self.is_reordering() && self != Self::BoulosSingle)
+        matches!(self, Self::Packet | Self::Ordered) || (self.is_plain_if_emulated() && self != Self::BoulosSingle)
     }
 
-    /// Whether it is one of those of the paper of 2008.
-    pub fn is_reordering(self) -> bool {
-        self.traversal().is_some()
+    /// Whether it has one lane at emulated levels, at any width.
+    pub fn is_plain_if_emulated(self) -> bool {
+        self.traversal().is_some() || matches!(self, Self::BreadthFirst | Self::DivideConquer)
     }
 
     fn traversal(self) -> Option<Traversal> {

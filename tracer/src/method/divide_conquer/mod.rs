@@ -114,7 +114,7 @@ pub struct DivideConquer<'a> {
 }
 
 impl<'a> DivideConquer<'a> {
-    /// Over triangles, at a level, with vectors of `width` rays.
+    /// Over triangles, at a level, with vectors of `width` rays. At the emulated levels (serial and scalar) vectors have one lane whatever the width.
     #[must_use]
     pub fn new(triangles: &'a TriangleBoxes, level: Level, width: Width) -> Self {
         Self {
@@ -134,7 +134,8 @@ impl<'a> DivideConquer<'a> {
         Self { limits, ..self }
     }
 
-    /// With this way to keep rays together. [`Filtering::Places`] is for measurements, on one thread: with several, rays are moved.
+    /// With this way to keep rays together. [`Filtering::Places`] is for measurements: of one thread (with several, rays are moved where halves are tasks), and with
+    /// vectors as wide as the level's registers.
     #[must_use]
     pub fn with_filtering(self, filtering: Filtering) -> Self {
         Self { filtering, ..self }
@@ -169,7 +170,7 @@ impl<'a> DivideConquer<'a> {
         let all = self.triangles.all;
         let Room { rows, found, ids, starts, .. } = room;
         let width = self.width.lanes(self.level);
-        let [from, last] = rays::load_batch(rays.blocks(), self.level, width, rows);
+        let [from, last] = rays::load_batch(rays.blocks(), self.level, rows);
         starts.clear();
         if from < last {
             starts.extend(rays.iter().map(|ray| ray.t_min));

@@ -1,7 +1,7 @@
 //! Rays of 32 bytes, which are moved (section 3.1), and what they hit.
 
 use crate::geometry::{Packet, RayBlock, Vec3};
-use crate::lanes::{self, Lanes};
+use crate::lanes::{self, Lanes, Width};
 use rayon::prelude::*;
 use simd::{Float, Level, Mask, Simd, Vector};
 
@@ -92,6 +92,9 @@ fn safe<F: Float>(d: F) -> F {
 
 /// The rays that are looked at, the active ones first.
 pub(super) trait Active {
+    /// Whether vectors are of any width: else of that of the level's registers.
+    const ANY_WIDTH: bool;
+
     /// `n` rays from place `at` on and [`NONE`] behind them, as many as lanes.
     fn load<'a, F: Float>(&'a self, at: usize, n: usize, buffer: &'a mut [Row; 16]) -> &'a [Row];
 
@@ -112,6 +115,8 @@ pub(super) const BUFFER: [Row; 16] = [NONE; 16];
 pub(super) struct InPlace<'a>(pub(super) &'a mut [Row]);
 
 impl Active for InPlace<'_> {
+    const ANY_WIDTH: bool = true;
+
     #[inline(always)]
     fn load<'a, F: Float>(&'a self, at: usize, n: usize, buffer: &'a mut [Row; 16]) -> &'a [Row] {
         load::<F>(self.0, at, n, buffer)
@@ -152,6 +157,8 @@ pub(super) struct ByPlace<'a> {
 }
 
 impl Active for ByPlace<'_> {
+    const ANY_WIDTH: bool = false;
+
     #[inline(always)]
     fn load<'a, F: Float>(&'a self, at: usize, n: usize, buffer: &'a mut [Row; 16]) -> &'a [Row] {
         if n < F::LANES {
@@ -188,10 +195,10 @@ pub(super) fn bits<F: Float>(mask: F::Mask, n: usize) -> u32 {
 const PORTION: usize = 1024;
 
 /// Puts a batch into rows, sixteen for each block. Returns the smallest and the largest start of the intervals.
-pub(super) fn load_batch(blocks: &[RayBlock], level: Level, lanes: usize, rows: &mut Vec<Row>) -> [f32; 2] {
+pub(super) fn load_batch(blocks: &[RayBlock], level: Level, rows: &mut Vec<Row>) -> [f32; 2] {
     rows.resize(16 * blocks.len(), NONE);
     let portions = blocks.par_chunks(PORTION).zip(rows.par_chunks_mut(16 * PORTION)).enumerate();
-    let loaded =
-        portions.map(|(i, (blocks, rows))| lanes::run(level, lanes, Load { blocks, first: 16 * PORTION * i, rows }));
+    let loaded = portions
+        .map(|(i, (blocks, rows))| lanes::run_long(level, Width::Auto, Load { blocks, first: 16 * PORTION * i, rows }));
     loaded.reduce(|| [f32::INFINITY, 0.0], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
 }

@@ -84,7 +84,7 @@ impl Shared<'_> {
                 room.rows.resize(active + part.len(), NONE);
             }
             let to = &mut room.rows[active..active + part.len()];
-            active += lanes::run_simd(level, lanes, Copy { rows: part, to, ends, planes, from });
+            active += lanes::run_simd_native(level, Copy { rows: part, to, ends, planes, from });
         }
         let mut done = Done::default();
         done.counters.box_tests += rays.len().div_ceil(lanes) as u64;

@@ -7,7 +7,7 @@ use super::rays::{Active, ByPlace, InPlace, Row};
 use super::triangles::TriangleBoxes;
 use super::{DivideLimits, Filtering, Phases};
 use crate::geometry::{Hit, Triangle};
-use crate::lanes;
+use crate::lanes::{self, Width};
 use crate::stats::Counters;
 use simd::Level;
 use std::ops::Add;
@@ -125,16 +125,18 @@ impl Traversal<'_> {
     fn filter<A: Active>(&mut self, range: &Range, rays: &mut A, len: usize) -> usize {
         let start = self.start();
         let planes = range.planes();
-        let Query { level, width: lanes, from, limits, .. } = self.query;
+        let Query { level, from, limits, .. } = self.query;
+        let lanes = self.lanes::<A>();
         let sampled = len >= Sample::<A>::LEAST && range.len() > 4 * limits.few_triangles && limits.filter_below < 1.0;
         let active = if sampled
-            && lanes::run_simd(level, lanes, Sample { rays: &*rays, len, planes, from }) > limits.filter_below
+            && lanes::run_simd_native(level, Sample { rays: &*rays, len, planes, from }) > limits.filter_below
         {
-            self.done.counters.box_tests += Sample::<A>::tests(lanes);
+            self.done.counters.box_tests += Sample::<A>::tests(level.isa().lanes());
             len
         } else {
             self.done.counters.box_tests += len.div_ceil(lanes) as u64;
-            lanes::run_simd(level, lanes, Filter { rays, len, planes, from })
+            let job = Filter { rays, len, planes, from };
+            if const { A::ANY_WIDTH } { lanes::run_simd(level, lanes, job) } else { lanes::run_simd_native(level, job) }
         };
         self.stop(start, |phases, time| phases.filter += time);
         active
@@ -142,13 +144,23 @@ impl Traversal<'_> {
 
     fn intersect<A: Active>(&mut self, range: &Range, rays: &mut A, len: usize) {
         let start = self.start();
-        let Query { triangles, level, width: lanes, from, starts, any, .. } = self.query;
+        let Query { triangles, level, from, starts, any, .. } = self.query;
+        let lanes = self.lanes::<A>();
         self.leaf.clear();
         self.leaf.extend(self.ids[range.first..range.end].iter().map(|&id| triangles.get(id)));
         let job = Intersect { rays, len, triangles: &self.leaf, from, starts, found: &mut *self.found, any };
-        self.done.counters.triangle_hits += lanes::run(level, lanes, job);
+        self.done.counters.triangle_hits += if const { A::ANY_WIDTH } {
+            lanes::run_plain_if_emulated(level, lanes, job)
+        } else {
+            lanes::run_long(level, Width::Auto, job)
+        };
         self.done.counters.triangle_tests += (len.div_ceil(lanes) * self.leaf.len()) as u64;
         self.stop(start, |phases, time| phases.intersect += time);
+    }
+
+    /// Rays in a vector.
+    fn lanes<A: Active>(&self) -> usize {
+        if A::ANY_WIDTH { self.query.width } else { self.query.level.isa().lanes() }
     }
 
     fn start(&self) -> Option<Instant> {

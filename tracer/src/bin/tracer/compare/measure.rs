@@ -106,7 +106,7 @@ fn cases(method: MethodChoice, reorder: Reorder) -> Vec<Case> {
             _ if level.isa() == Isa::Serial => &[],
             _ if !method.has_packets() => &[Width::Auto],
             // Emulated, these have one lane at any width.
-            _ if method.is_reordering() && level.isa() == Isa::Scalar => &[Width::One],
+            _ if method.is_plain_if_emulated() && level.isa() == Isa::Scalar => &[Width::One],
             _ => &[Width::Four, Width::Eight, Width::Sixteen],
         };
         for &width in widths {
