@@ -22,7 +22,7 @@
 //! With `g` for the box on the other axes that is less than `91 u S`. Rectangles and interval are widened by `128 u S`.
 
 use super::{Aabb, Packet, RayBlock, Vec3};
-use simd::{Float, Mask, Vector};
+use simd::{Float, Mask};
 
 /// Where all boxes are that frusta are tested against.
 #[derive(Debug, Clone, Copy)]

@@ -94,14 +94,14 @@ fn packet(random: &mut Random, round: usize, scale: f32) -> Vec<RayBlock> {
 fn planes(random: &mut Random, ray: &Ray, scale: f32) -> [f32; 8] {
     let mut planes = [0.0; 8];
     let t = random.between(0.0, 2.0) * scale / ray.dir.iter().fold(1e-30_f32, |most, d| most.max(d.abs()));
-    let (near, aim) = (random.bits() % 4 != 0, random.bits() % 3);
+    let (near, aim) = (!random.bits().is_multiple_of(4), random.bits() % 3);
     for axis in 0..3 {
         let mut low = if near { ray.org[axis] + t * ray.dir[axis] } else { number(random, scale) };
         if near && aim == axis as u64 {
             low += (random.bits() % 9) as f32 * 0.5 * f32::EPSILON * low.abs();
         }
-        let size = if random.bits() % 2 == 0 { 0.0 } else { random.between(0.0, scale) * 0.01 };
-        let (low, high) = if random.bits() % 2 == 0 { (low, low + size) } else { (low - size, low) };
+        let size = if random.bits().is_multiple_of(2) { 0.0 } else { random.between(0.0, scale) * 0.01 };
+        let (low, high) = if random.bits().is_multiple_of(2) { (low, low + size) } else { (low - size, low) };
         (planes[axis], planes[axis + 4]) = (low, high);
     }
     planes

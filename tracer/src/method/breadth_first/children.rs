@@ -76,7 +76,7 @@ fn sort<F: Float>(met: u32, leaves: u32, order: Order) -> u32 {
             let slot = place ^ order.signs;
             let child = order.children >> (3 * slot) & 7;
             let on = met >> child & order.taken >> slot & 1;
-            sorted |= on * (child | (leaves >> child & 1) << 3) << shift;
+            sorted |= (on * (child | (leaves >> child & 1) << 3)) << shift;
             shift += 4 * on;
         }
     }

@@ -101,7 +101,7 @@ impl Queues {
                 (*frustum, *node) = ((first + i) as u32, children::root(tree));
             }
             loop {
-                self.to_leaves(level, tree, frusta, &mut count);
+                self.descend(level, tree, frusta, &mut count);
                 leaves.append(level, &self.input.frusta[..self.input.len], &self.input.nodes[..self.input.len]);
                 let Some([frusta, nodes]) = self.waiting.pop() else { break };
                 self.input.len = nodes.len();
@@ -113,7 +113,7 @@ impl Queues {
     }
 
     /// Takes the pairs of the input down to the leaves, or the first of them, while the others wait.
-    fn to_leaves(&mut self, level: Level, tree: &OctoBvh, frusta: &[Frustum], count: &mut Option<&mut stats::Frusta>) {
+    fn descend(&mut self, level: Level, tree: &OctoBvh, frusta: &[Frustum], count: &mut Option<&mut stats::Frusta>) {
         loop {
             let len = self.input.len;
             if self.numbers.len() < len {
@@ -133,17 +133,17 @@ impl Queues {
                 return;
             }
             let total = exclusive_scan(level, &self.numbers[..len], &mut self.sums[..len]) as usize;
-            if total > self.capacity {
-                if let Some(middle) = self.input.middle() {
-                    let rest = middle..len;
-                    self.waiting.push([self.input.frusta[rest.clone()].to_vec(), self.input.nodes[rest].to_vec()]);
-                    self.input.len = middle;
-                    if let Some(count) = count {
-                        count.splits += 1;
-                    }
-                    continue;
+            // A single frustum that comes to more nodes has more room.
+            if total > self.capacity
+                && let Some(middle) = self.input.middle()
+            {
+                let rest = middle..len;
+                self.waiting.push([self.input.frusta[rest.clone()].to_vec(), self.input.nodes[rest].to_vec()]);
+                self.input.len = middle;
+                if let Some(count) = count {
+                    count.splits += 1;
                 }
-                // A frustum that comes to more nodes than there shall be room for.
+                continue;
             }
             self.output.reserve(total);
             if let Some(count) = count {
@@ -225,7 +225,7 @@ impl Lanes for Scatter<'_> {
                 let children = F::Index::splat(sorted >> (4 * k)).shr_lanes(shifts);
                 let leaf = (children & F::Index::splat(8)) << 28;
                 let at = sum as usize + k;
-                (F::Index::splat(base) + (children & F::Index::splat(7)) | leaf).store(&mut to_nodes[at..]);
+                ((F::Index::splat(base) + (children & F::Index::splat(7))) | leaf).store(&mut to_nodes[at..]);
                 F::Index::splat(frustum).store(&mut to_frusta[at..]);
                 k += F::LANES;
             }

@@ -14,9 +14,6 @@ pub(in crate::method) trait Query {
 
     /// Puts down what one ray hit.
     fn put(block: &mut Self::Block, lane: usize, hit: &Hit);
-
-    /// The result of one ray, which lies in a lane of a block, in another place, where nothing was put down so far.
-    fn copy(from: (&Self::Block, usize), to: (&mut Self::Block, usize));
 }
 
 /// What a query knows of each lane so far.
@@ -43,11 +40,6 @@ impl Query for Closest {
         block.u.0[lane] = hit.u;
         block.v.0[lane] = hit.v;
         block.primitive.0[lane] = hit.primitive;
-    }
-
-    #[inline(always)]
-    fn copy((from, i): (&HitBlock, usize), (to, k): (&mut HitBlock, usize)) {
-        Self::put(to, k, &from.get(i));
     }
 }
 
@@ -108,11 +100,6 @@ impl Query for Any {
     #[inline(always)]
     fn put(block: &mut u16, lane: usize, _: &Hit) {
         *block |= 1 << lane;
-    }
-
-    #[inline(always)]
-    fn copy((from, i): (&u16, usize), (to, k): (&mut u16, usize)) {
-        *to |= (from >> i & 1) << k;
     }
 }
 
