@@ -4,7 +4,7 @@ use super::*;
 use crate::geometry::Ray;
 use crate::geometry::slab::{Near, PerRay, interval};
 use crate::scene::random::Random;
-use simd::{Level, kernel};
+use simd::{Level, Vector, kernel};
 
 kernel! {
     fn frusta_of<S>(blocks: &[RayBlock], space: &Space) -> (Vec<Frustum>, Vec<(u32, u16)>) {
