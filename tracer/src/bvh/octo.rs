@@ -12,13 +12,13 @@ use std::borrow::Cow;
 pub struct OctoConfig {
     /// Levels of the binary tree that become one: 1 to 3 (other values are clamped), which gives nodes of up to 2, 4 or 8 children.
     pub levels: u32,
-    /// Subtrees of at most so many triangles become a leaf (by default 10, the paper's); leaves of the binary tree stay leaves. At most 255.
+    /// Subtrees of at most so many triangles become a leaf (by default 8, the fastest; the paper has 10); leaves of the binary tree stay leaves. At most 255.
     pub max_leaf: u32,
 }
 
 impl Default for OctoConfig {
     fn default() -> Self {
-        Self { levels: 3, max_leaf: 10 }
+        Self { levels: 3, max_leaf: 8 }
     }
 }
 

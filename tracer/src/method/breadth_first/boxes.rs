@@ -36,13 +36,7 @@ impl Boxes {
     #[inline(always)]
     pub(super) fn add<F: Float>(&mut self, (bvh, tree): (&Bvh, &OctoBvh), leaves: &[u32]) {
         let (rows, zero) = (tree.rows(), [Block([0.0; 16]); 3]);
-        let mut rest = leaves;
-        while !rest.is_empty() {
-            let leaves;
-            (leaves, rest) = rest.split_at(rest.len().min(16));
-            for &later in rest.iter().take(16) {
-                simd::prefetch(rows, later as usize);
-            }
+        for leaves in leaves.chunks(16) {
             let mut boxes = [NOTHING; 16];
             let mut sixteen = Sixteen { low: zero, high: zero, nodes: [0; 16] };
             for ((row, node), &leaf) in boxes.iter_mut().zip(&mut sixteen.nodes).zip(leaves) {

@@ -101,7 +101,7 @@ impl Queues {
                 (*frustum, *node) = ((first + i) as u32, children::root(tree));
             }
             loop {
-                self.down_to_leaves(level, tree, frusta, &mut count);
+                self.descend(level, tree, frusta, &mut count);
                 leaves.append(level, &self.input.frusta[..self.input.len], &self.input.nodes[..self.input.len]);
                 let Some([frusta, nodes]) = self.waiting.pop() else { break };
                 self.input.len = nodes.len();
@@ -113,13 +113,7 @@ impl Queues {
     }
 
     /// Takes the pairs of the input down to the leaves, or the first of them, while the others wait.
-    fn down_to_leaves(
-        &mut self,
-        level: Level,
-        tree: &OctoBvh,
-        frusta: &[Frustum],
-        count: &mut Option<&mut stats::Frusta>,
-    ) {
+    fn descend(&mut self, level: Level, tree: &OctoBvh, frusta: &[Frustum], count: &mut Option<&mut stats::Frusta>) {
         loop {
             let len = self.input.len;
             if self.numbers.len() < len {
@@ -139,7 +133,7 @@ impl Queues {
                 return;
             }
             let total = exclusive_scan(level, &self.numbers[..len], &mut self.sums[..len]) as usize;
-            // A frustum alone may come to more nodes than there shall be room for.
+            // A single frustum that comes to more nodes has more room.
             if total > self.capacity
                 && let Some(middle) = self.input.middle()
             {
