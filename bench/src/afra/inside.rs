@@ -13,7 +13,7 @@ use tracer::progress::Progress;
 #[derive(Debug, Clone, Serialize)]
 pub struct Inside {
     pub scene: Name,
-    /// Seconds of filtering, intersecting and partitioning: as by default, and filtering always, as in the paper.
+    /// Seconds of filtering, intersecting and partitioning in the shortest round: as by default, and filtering always, as in the paper.
     pub phases: [[f64; 3]; 2],
     pub memory: Memory,
 }
@@ -50,14 +50,21 @@ pub fn measure(scene: &Scene, rays: &[RayBatch], level: Level, task: &Task<'_>) 
     let mut held = [0; 3];
     for (phases, limits) in phases.iter_mut().zip([DivideLimits::default(), always()]) {
         let method = method().with_limits(limits);
+        let mut shortest = f64::INFINITY;
         for _ in 0..task.repeat {
+            let mut round = [0.0; 3];
             for batch in rays {
                 let mut cx = Context { counters: None, cancel: Some(task.console.cancel()) };
                 let (done, _) = task.run(Threads::One, || method.closest_timed(batch, &mut hits, &mut cx));
                 let done = done?;
-                for (sum, time) in phases.iter_mut().zip([done.filter, done.intersect, done.partition]) {
-                    *sum += time.as_secs_f64() / task.repeat as f64;
+                for (sum, time) in round.iter_mut().zip([done.filter, done.intersect, done.partition]) {
+                    *sum += time.as_secs_f64();
                 }
+            }
+            // The clock on the wall is the method's own: what else runs makes rounds longer.
+            let all = round.iter().sum();
+            if all < shortest {
+                (shortest, *phases) = (all, round);
             }
         }
         held[0] = held[0].max(method.memory());

@@ -90,6 +90,10 @@ pub fn race(
     task: &Task<'_>,
 ) -> Result<Vec<Spent>, Error> {
     let n = rivals.len();
+    if rays.is_empty() {
+        // All paths have left the scene before.
+        return Ok(vec![Spent::default(); n]);
+    }
     let mut times = vec![[const { Vec::new() }; 2]; n];
     let mut hits = HitBatch::new();
     let mut first: Option<(u64, &str)> = None;

@@ -31,7 +31,7 @@ pub fn markdown(report: &Report) -> String {
     for part in report.parts.iter().filter(|part| !part.dynamic.points.is_empty()) {
         text += &crossover(&part.dynamic);
     }
-    text += "\n## Phases\n\nParts of the time of DAC, one thread, 1 bounce.\n\n";
+    text += "\n## Phases\n\nParts of the time of DAC by the clock on the wall, one thread, 1 bounce, in the shortest round.\n\n";
     text += &phase_table(report);
     text += "\n## Memory\n\nMiB for the eye rays (R) and the triangles (T) on N threads. By the paper's formula, 32 R + (48 + 4 N) T, hits and stack left out; by Mora's, 36 R + (40 + 4 N) T. \
              Held: boxes, complements and ids, and what the method keeps from batch to batch: 32 R rays, 16 R hits, 4 T ids, and copies of rays where halves are \
