@@ -96,10 +96,14 @@ impl<J: Lanes> Kernel for AtWidthOrPlain<J> {
 
     #[inline(always)]
     fn run<S: Simd>(self) -> J::Output {
+        // Not by way of `AtWidth`, which would be compiled for emulated levels after all.
         if const { matches!(S::LEVEL.isa(), Isa::Serial | Isa::Scalar) } {
-            plain(self.job)
-        } else {
-            AtWidth { lanes: self.lanes, job: self.job }.run::<S>()
+            return plain(self.job);
+        }
+        match self.lanes {
+            4 => self.job.run::<S::Float4>(),
+            8 => self.job.run::<S::Float8>(),
+            _ => self.job.run::<S::Float16>(),
         }
     }
 }
@@ -183,7 +187,7 @@ impl<J: Lanes> Kernel for AtWidth<J> {
     fn run<S: Simd>(self) -> J::Output {
         match self.lanes {
             4 => self.job.run::<S::Float4>(),
-            _ if is_serial::<S>() => Level::SCALAR.run(self),
+            _ if const { is_serial::<S>() } => Level::SCALAR.run(self),
             8 => self.job.run::<S::Float8>(),
             _ => self.job.run::<S::Float16>(),
         }
