@@ -117,7 +117,7 @@ impl<Q: Query, C: Count> Kernel for Trace<'_, Q, C> {
 
     #[inline(always)]
     fn run<S: Simd>(mut self) -> Counters {
-        if is_serial::<S>() {
+        if const { is_serial::<S>() } {
             return Level::SCALAR.run(self);
         }
         let mut tile = Tile::<Q>::new(self.bvh, self.limits, self.row.is_some());
