@@ -177,6 +177,9 @@ impl<'a> DivideConquer<'a> {
         }
         found.clear();
         found.resize(rows.len(), Hit::MISS);
+        if rows.is_empty() {
+            return Ok(Done::default());
+        }
         ids.clear();
         ids.extend_from_slice(&self.triangles.ids);
         let query = Query {

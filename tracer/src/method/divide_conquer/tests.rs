@@ -129,13 +129,20 @@ fn an_empty_batch_and_what_cannot_be_hit() {
     let mut mesh = Mesh::default();
     add(&mut mesh, [[0.0; 3]; 3]);
     let triangles = TriangleBoxes::new(&mesh).expect("a valid mesh");
-    let method = DivideConquer::new(&triangles, Level::best(), Width::Auto);
-    let mut hits = HitBatch::new();
-    method.closest(&RayBatch::new(), &mut hits, &mut Context::default()).expect("not cancelled");
-    assert!(hits.is_empty());
     let rays: RayBatch = [crate::geometry::Ray::new([0.0; 3], [0.0, 0.0, 1.0])].into_iter().collect();
-    method.closest(&rays, &mut hits, &mut Context::default()).expect("not cancelled");
-    assert!(hits.get(0).is_miss());
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        for sharing in [Sharing::Naive, Sharing::Tasks] {
+            let method = DivideConquer::new(&triangles, Level::best(), Width::Auto).with_sharing(sharing);
+            let mut hits = HitBatch::new();
+            let mut ask = |rays: &RayBatch| {
+                pool.install(|| method.closest(rays, &mut hits, &mut Context::default())).expect("not cancelled");
+                hits.clone()
+            };
+            assert!(ask(&RayBatch::new()).is_empty());
+            assert!(ask(&rays).get(0).is_miss());
+        }
+    }
 }
 
 #[test]
