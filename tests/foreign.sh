@@ -43,8 +43,7 @@ case ${1:-} in
         cpus=(default cortex-a53) levels=serial,scalar,neon exact=true ;;
     i686)
         triple=i686-unknown-linux-gnu gnu=i686-linux-gnu arch=i386 qemu=i386
-        # It runs at the speed of this machine, but six levels with eight registers take the compiler a quarter of an hour.
-        levels=serial,scalar,sse2 exact=true options=(--config profile.dev.package.tracer.opt-level=1) ;;
+        levels=serial,scalar,sse2 exact=true ;;
     i586)
         # The FPU rounds a chain of operations once, when the result is stored, and makes signalling NaNs quiet: no promise of
         # the same bits, nor of the accuracy of exp2 and log2, can be kept there. What holds are comparisons, masks, integers

@@ -3,6 +3,7 @@
 mod filter;
 mod found;
 mod intersect;
+mod pack;
 mod partition;
 mod rays;
 mod room;

@@ -1,11 +1,14 @@
 //! Triangles as boxes and what boxes leave out (section 3.3): 48 bytes each, from which [`Triangle`]s come back bit for bit.
 
+use super::pack::{Pack, Source};
 use super::partition::Range;
 use crate::Error;
 use crate::bvh::build::primitive::{Box8, centers_of};
 use crate::geometry::Triangle;
+use crate::lanes::{self, Width};
 use crate::model::Mesh;
 use rayon::prelude::*;
+use simd::Level;
 
 /// The triangles of a mesh as [`DivideConquer`](super::DivideConquer) wants them: in no order but the mesh's.
 ///
@@ -20,24 +23,24 @@ pub struct TriangleBoxes {
     pub(super) all: Range,
 }
 
-/// The middle coordinate on each axis, and the code: from bit 3 `a` on, which [`ORDERS`] the axis has; from bit 9 on, three bits for
-/// each coordinate of `e1` and `e2`, see [`steps`].
+/// The middle coordinate on each axis, and the code: from bit 3 `a` on, which of [`ORDERS`] axis `a` has; from bit 9 on, three bits for
+/// each of `e1` and `e2` on each axis, see [`correct`].
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(16))]
-struct Complement {
-    middle: [f32; 3],
-    code: u32,
+pub(super) struct Complement {
+    pub(super) middle: [f32; 3],
+    pub(super) code: u32,
 }
 
-/// Places of the three vertices' coordinates among smallest, middle and largest.
-const ORDERS: [[u8; 3]; 8] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0], [0, 1, 2], [0, 1, 2]];
-
 /// In place of a degenerate triangle.
-const NOTHING: (Box8, Complement) = (Box8::EMPTY, Complement { middle: [0.0; 3], code: 0 });
+pub(super) const NOTHING: (Box8, Complement) = (Box8::EMPTY, Complement { middle: [0.0; 3], code: 0 });
 
-/// Which of [`ORDERS`] it is, by whether the first vertex comes before the second, before the third, and the second before the third.
-/// (The third before the first, that before the second, and this before the third: cannot be.)
-const ORDER_OF: [u32; 8] = [5, 3, 0, 1, 4, 0, 2, 0];
+/// Places of the three vertices' coordinates among smallest, middle and largest, by whether the first is at most the second (bit 0), at most the third (bit 1),
+/// and the second at most the third (bit 2). Of these, 2 and 5 cannot be.
+const ORDERS: [[u8; 3]; 8] = [[2, 1, 0], [1, 2, 0], [0, 1, 2], [0, 2, 1], [2, 0, 1], [0, 1, 2], [1, 0, 2], [0, 1, 2]];
+
+/// Triangles that one thread packs at a time.
+const PORTION: usize = 1 << 12;
 
 impl TriangleBoxes {
     /// Bytes for each triangle.
@@ -49,25 +52,30 @@ impl TriangleBoxes {
     /// [`Error::Geometry`] as [`Mesh::validate`].
     pub fn new(mesh: &Mesh) -> Result<Self, Error> {
         mesh.validate()?;
-        let n = mesh.triangles.len();
-        let (mut boxes, mut complements) = (simd::vec_in_huge_pages(n), simd::vec_in_huge_pages(n));
-        let packed = (0..n).into_par_iter().with_min_len(4096).map(|i| {
-            let triangle = Triangle::new(mesh.triangle(i), i as u32, mesh.material(i));
-            if triangle.is_degenerate() { NOTHING } else { pack(&triangle) }
-        });
-        packed.unzip_into_vecs(&mut boxes, &mut complements);
-        Ok(Self::of_packed(boxes, complements))
+        Ok(Self::pack(mesh.triangles.len(), &Source::Vertices(&|i| mesh.triangle(i))))
     }
 
     /// Of triangles in any order, by their ids; degenerate ones are passed over.
     #[must_use]
     pub fn of_triangles(triangles: &[Triangle]) -> Self {
         let n = triangles.iter().map(|t| t.id as usize + 1).max().unwrap_or(0);
-        let mut packed = vec![NOTHING; n];
-        for triangle in triangles.iter().filter(|t| !t.is_degenerate()) {
-            packed[triangle.id as usize] = pack(triangle);
+        let nothing = Triangle::new([[0.0; 3]; 3], 0, 0);
+        let mut in_order = vec![nothing; n];
+        for triangle in triangles {
+            in_order[triangle.id as usize] = *triangle;
         }
-        let (boxes, complements) = packed.into_iter().unzip();
+        Self::pack(n, &Source::Edges(&in_order))
+    }
+
+    fn pack(n: usize, source: &Source<'_>) -> Self {
+        let (mut boxes, mut complements) = (simd::vec_in_huge_pages(n), simd::vec_in_huge_pages(n));
+        boxes.resize(n, NOTHING.0);
+        complements.resize(n, NOTHING.1);
+        let portions = boxes.par_chunks_mut(PORTION).zip(complements.par_chunks_mut(PORTION)).enumerate();
+        portions.for_each(|(i, (boxes, complements))| {
+            let job = Pack { source, first: PORTION * i, boxes, complements };
+            lanes::run_long(Level::best(), Width::Auto, job);
+        });
         Self::of_packed(boxes, complements)
     }
 
@@ -107,30 +115,6 @@ impl TriangleBoxes {
     }
 }
 
-fn pack(triangle: &Triangle) -> (Box8, Complement) {
-    let mut b = Box8([0.0; 8]);
-    let (mut middle, mut code) = ([0.0; 3], 0);
-    for (axis, middle) in middle.iter_mut().enumerate() {
-        let v0 = triangle.v0[axis];
-        let numbers = [v0, v0 + triangle.e1[axis], v0 + triangle.e2[axis]];
-        // Bits and all: of zeros the negative one is the smaller here.
-        let [p, q, r] = [place(numbers[0]), place(numbers[1]), place(numbers[2])];
-        let order = ORDER_OF[usize::from(p <= q) | usize::from(p <= r) << 1 | usize::from(q <= r) << 2];
-        let mut sorted = [0.0; 4];
-        for (k, x) in numbers.into_iter().enumerate() {
-            sorted[(ORDERS[order as usize & 7][k] & 3) as usize] = x;
-        }
-        (b.0[axis], *middle, b.0[4 + axis]) = (sorted[0], sorted[1], -sorted[2]);
-        code |= order << (3 * axis);
-        for (k, edge) in [triangle.e1[axis], triangle.e2[axis]].into_iter().enumerate() {
-            let steps = place(edge) - place(numbers[k + 1] - v0);
-            debug_assert!((-4..4).contains(&steps), "{triangle:?}");
-            code |= (steps as u32 & 7) << (9 + 3 * (2 * axis + k));
-        }
-    }
-    (b, Complement { middle, code })
-}
-
 /// Edges are not always the differences of the vertices `v0`, `v0 + e1` and `v0 + e2` as rounded: if the second is more than twice as large as
 /// `v0`, its last bit can be worth two or four of the edge's. Then the code says how many numbers up or down the edge is. (Where it is at most
 /// twice as large, either the difference or the sum is exact; Sterbenz 1974.) Negative zero is one below zero.
@@ -161,17 +145,33 @@ mod tests {
         [t.v0, t.e1, t.e2].map(|v| v.map(f32::to_bits))
     }
 
-    fn check(vertices: [[f32; 3]; 3]) -> bool {
-        let t = Triangle::new(vertices, 0, 0);
-        if t.is_degenerate() {
-            return false;
+    /// Packs triangles in two ways and at all levels, and takes them back; returns how many have an edge that is no difference.
+    fn check(vertices: &[[[f32; 3]; 3]]) -> usize {
+        let triangles: Vec<Triangle> = (0..).zip(vertices).map(|(id, v)| Triangle::new(*v, id, 0)).collect();
+        let packed = TriangleBoxes::pack(vertices.len(), &Source::Vertices(&|i| vertices[i]));
+        let again = TriangleBoxes::of_triangles(&triangles);
+        for level in Level::available() {
+            let (mut boxes, mut complements) = (vec![NOTHING.0; vertices.len()], vec![NOTHING.1; vertices.len()]);
+            let source = &Source::Edges(&triangles);
+            let job = Pack { source, first: 0, boxes: &mut boxes, complements: &mut complements };
+            lanes::run_long(level, Width::Auto, job);
+            for other in [(&packed.boxes, &packed.complements), (&again.boxes, &again.complements)] {
+                let same = boxes.iter().zip(other.0).all(|(a, b)| a.0.map(f32::to_bits) == b.0.map(f32::to_bits));
+                let codes = complements.iter().zip(other.1).all(|(a, b)| a.code == b.code && a.middle == b.middle);
+                assert!(same && codes, "{level}");
+            }
         }
-        let (b, complement) = pack(&t);
-        assert_eq!(b.aabb(), t.bounds(), "{vertices:?}");
-        let all = Range { first: 0, end: 1, bounds: b, centers: b };
-        let back = TriangleBoxes { boxes: vec![b], complements: vec![complement], ids: vec![0], all }.get(0);
-        assert_eq!(bits(&back), bits(&t), "{vertices:?}");
-        complement.code >> 9 != 0
+        let mut corrected = 0;
+        for (id, triangle) in (0..).zip(&triangles) {
+            assert_eq!(packed.boxes[id as usize].is_empty(), triangle.is_degenerate(), "{triangle:?}");
+            if !triangle.is_degenerate() {
+                assert_eq!(packed.boxes[id as usize].aabb(), triangle.bounds(), "{triangle:?}");
+                assert_eq!(bits(&packed.get(id)), bits(triangle), "{triangle:?}");
+                corrected += usize::from(packed.complements[id as usize].code >> 9 != 0);
+            }
+        }
+        assert!(packed.ids.iter().all(|&id| !triangles[id as usize].is_degenerate()));
+        corrected
     }
 
     #[test]
@@ -183,16 +183,18 @@ mod tests {
     fn triangles_come_back_bit_for_bit() {
         let mut random = Random(5);
         let mut corrected = 0;
-        for i in 0..1_000_000_u32 {
+        for i in 0..50 {
             let mut corner = || {
                 let mut p = random.point(1.0);
                 for x in &mut p {
-                    *x *= [1.0, 1e-3, 1e-7, 1e6, 0.0, -0.0, 1e-42, 1e30]
-                        [random.bits() as usize % [1, 2, 4, 8][i as usize % 4]];
+                    let kinds = [1, 2, 4, 8, 10][i % 5];
+                    let scales = [1.0, 1e-3, 1e-7, 1e6, 0.0, -0.0, 1e-42, 1e30, f32::MAX, 1e-20];
+                    *x *= scales[random.bits() as usize % kinds];
                 }
                 p
             };
-            corrected += u32::from(check([corner(), corner(), corner()]));
+            let vertices: Vec<[[f32; 3]; 3]> = (0..10_007).map(|_| [corner(), corner(), corner()]).collect();
+            corrected += check(&vertices);
         }
         println!("{corrected} with an edge that is no difference");
         assert!(corrected > 1000, "{corrected}");
