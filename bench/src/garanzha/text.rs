@@ -65,11 +65,12 @@ fn head(report: &Report) -> String {
          - measured: CPU time; all ways are given the same batches, one after the other on each batch, another one first in each round; medians of {repeat} rounds (of one in table 1, of two at most in \
          figure 15). Stages are parts of the time on the wall\n\
          - frusta: packets of at most 256 rays of one cell of 0.004 of the diagonal, sorted by origin (eye rays: not sorted, along a Z-curve), the tree by the surface area heuristic with at \
-         most 10 triangles a leaf, 8 children a node\n\
+         most {} triangles a leaf, 8 children a node\n\
          - `wide`: single rays through a tree of 8 children a node; `auto`: as many rays together as agree, through the same; `packet`: the packets of the paper of 2003\n\
          - paper: a GPU (GTX 285), its scenes, cameras and lamps differ from these\n",
         report.machine,
         simd::Level::best(),
+        tracer::bvh::OctoConfig::default().max_leaf,
     );
     for part in &report.parts {
         let _ = writeln!(text, "- {}: {}", part.name, part.what);
