@@ -70,7 +70,8 @@ pub fn check(what: &str, trees: &Trees, levels: &[Level], rays: &RayBatch, expec
     for hit in expected {
         assert!(!hit.t.is_nan() && hit.u >= 0.0 && hit.v >= 0.0, "{what}: {hit:?}");
     }
-    let early = Limits { together: -1.0, coherent: -1.0, blocks: 0, rays: 0, scatter: 1e9, ..Limits::default() };
+    let early =
+        Limits { together: -1.0, coherent: -1.0, blocks: 0, rays: 0, scatter: 1e9, apart: 1e9, ..Limits::default() };
     for &level in levels {
         let same = |method: &dyn Method, kind: &str| {
             let what = || format!("{what}, {} tree, {level}, {} {kind}", trees.name, method.name());

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod image;
+mod node;
 mod tile;
 
 use super::query::{Any, Closest, Query};
@@ -32,12 +33,23 @@ pub struct Limits {
     /// Rays that are not coherent are traced alone from the start if the box around the origins of a block is larger than this
     /// part of the scene (sums of the sides), and blocks are not traced together if that of one of them is.
     pub scatter: f32,
+    /// The same for the closest hits of coherent blocks.
+    pub apart: f32,
 }
 
 impl Default for Limits {
     /// What was fastest.
     fn default() -> Self {
-        Self { together: 0.97, coherent: 0.9, blocks: 3, rays: 4, mixed_closest: 10, mixed_any: 4, scatter: 0.05 }
+        Self {
+            together: 0.97,
+            coherent: 0.9,
+            blocks: 3,
+            rays: 4,
+            mixed_closest: 10,
+            mixed_any: 4,
+            scatter: 0.05,
+            apart: 0.15,
+        }
     }
 }
 

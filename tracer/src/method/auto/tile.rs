@@ -1,8 +1,9 @@
 //! Up to 256 rays through a wide tree: together as long as they agree, then sixteen at a time, then each alone.
 
 use super::Limits;
-use super::bounds::{Bounds, Interval};
-use crate::bvh::{Child, WideBvh, WideNode};
+use super::bounds::Bounds;
+use super::node::{child_size, meet, near_to, planes, size};
+use crate::bvh::{Child, WideBvh};
 use crate::geometry::cull::{Boxes, Cull};
 use crate::geometry::moller_trumbore;
 use crate::geometry::slab::{Near, PerRay};
@@ -98,13 +99,13 @@ impl<Q: Query> Tile<Q> {
         // For shadow rays over small triangles a tile was measured to lose: up to six times.
         let size = size(&bvh.nodes[0]);
         let agreed = if Q::CLOSEST { self.agree::<S::Float16>(blocks, &octants, size) } else { None };
-        if let Some(octant) = agreed {
+        if let Some((octant, spread)) = agreed {
             for block in 0..BLOCKS {
                 self.begin::<S::Float16>(block);
             }
             self.bounds.set_all::<S::Float16>(&self.rays, blocks);
             count.packet();
-            self.tile::<S, C>(bvh, Near::of_octant(octant), blocks, count);
+            self.tile::<S, C>(bvh, Near::of_octant(octant), blocks, spread, count);
             return;
         }
         while blocks != 0 {
@@ -114,7 +115,10 @@ impl<Q: Query> Tile<Q> {
             self.begin::<S::Float16>(block);
             let rays = &self.rays[block];
             match octants[block] {
-                Some(octant) if rays.are_within::<S::Float16>(self.limits.coherent) => {
+                Some(octant)
+                    if rays.are_within::<S::Float16>(self.limits.coherent)
+                        && (!Q::CLOSEST || rays.scatter::<S::Float16>() <= self.limits.apart * size) =>
+                {
                     self.bounds.set::<S::Float16>(block, rays);
                     self.block::<S, C>(bvh, Near::of_octant(octant), Child::node(0), block, 0, count);
                 }
@@ -127,28 +131,31 @@ impl<Q: Query> Tile<Q> {
     }
 
     /// Whether it pays to trace these blocks together: their directions differ little, all point into this octant, and the rays of a block start near
-    /// each other (the box around parallel rays from anywhere meets every box: a hundred times the work).
+    /// each other (the box around parallel rays from anywhere meets every box: a hundred times the work). With the octant, how far apart rays of one
+    /// block start at most, as a sum of sides.
     #[inline(always)]
-    fn agree<F: Float>(&self, blocks: u16, octants: &[Option<usize>; BLOCKS], size: f32) -> Option<usize> {
+    fn agree<F: Float>(&self, blocks: u16, octants: &[Option<usize>; BLOCKS], size: f32) -> Option<(usize, f32)> {
         let reference = blocks.trailing_zeros() as usize % BLOCKS;
         let (rays, octant) = (&self.rays[reference], octants[reference]?);
         let lane = rays.valid.trailing_zeros() as usize % 16;
-        let mut rest = blocks;
+        let (mut spread, mut rest) = (0.0, blocks);
         while rest != 0 {
             let block = rest.trailing_zeros() as usize % BLOCKS;
             rest &= rest - 1;
             let other = &self.rays[block];
             let (first, last) =
                 (other.valid.trailing_zeros() as usize % 16, 15 - other.valid.leading_zeros() as usize % 16);
+            let scatter = if self.one_origin { 0.0 } else { other.scatter::<F>() };
             let same = octants[block] == Some(octant)
                 && rays.cosine_to(lane, other, first) >= self.limits.together
                 && rays.cosine_to(lane, other, last) >= self.limits.together
-                && (self.one_origin || other.scatter::<F>() <= self.limits.scatter * size);
+                && scatter <= self.limits.scatter * size;
             if !same {
                 return None;
             }
+            spread = if scatter > spread { scatter } else { spread };
         }
-        (blocks.count_ones() > self.limits.blocks).then_some(octant)
+        (blocks.count_ones() > self.limits.blocks).then_some((octant, spread))
     }
 
     /// All rays of the block are traced now.
@@ -160,9 +167,9 @@ impl<Q: Query> Tile<Q> {
         self.bounds.reach.0[block] = F::load_block(&rays.reach, 0).reduce_max();
     }
 
-    /// All blocks of the mask from the root on.
+    /// All blocks of the mask from the root on; the origins of a block differ by `spread` at most.
     #[inline(always)]
-    fn tile<S: Simd, C: Count>(&mut self, bvh: &WideBvh<N>, octant: Near, blocks: u16, count: &mut C) {
+    fn tile<S: Simd, C: Count>(&mut self, bvh: &WideBvh<N>, octant: Near, blocks: u16, spread: f32, count: &mut C) {
         let upper = octant.upper();
         let all = self.bounds.of_all::<S::Float8>(blocks, octant);
         let each = self.bounds.per_block::<S::Float16>(octant);
@@ -191,8 +198,9 @@ impl<Q: Query> Tile<Q> {
                     let (near, far) = planes(node, upper, i);
                     let (from, to) = each.between(near, far, reach);
                     let mut active = active & from.le(to).bitmask() as u16;
-                    // Triangles cost more than a box: who comes to a leaf has to meet it.
-                    if node.children[i].is_leaf() {
+                    // Triangles cost more than a box: who comes to a leaf has to meet it. And the box around a block's origins meets
+                    // all smaller boxes near its rays, down to the leaves: up to five times the work.
+                    if node.children[i].is_leaf() || child_size(node, i) < spread {
                         active = self.meeting::<S::Float16>(active, near, far);
                     }
                     if active != 0 {
@@ -479,49 +487,6 @@ impl<Q: Query> Tile<Q> {
         let rays = &self.rays[block];
         self.bounds.reach.0[block] = F::load_block(&rays.reach, 0).reduce_max();
     }
-}
-
-/// Sum of the sides of the box around the children.
-#[inline(always)]
-fn size(node: &WideNode<N>) -> f32 {
-    let mut size = 0.0;
-    for axis in 0..3 {
-        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
-        for i in 0..N {
-            let (a, b) = (node.planes[axis][i], node.planes[axis + 3][i]);
-            low = if a < low { a } else { low };
-            high = if b > high { b } else { high };
-        }
-        size += high - low;
-    }
-    size
-}
-
-/// Near and far planes of child `i` in every lane.
-#[inline(always)]
-fn planes<F: Float>(node: &WideNode<N>, [x, y, z]: [usize; 3], i: usize) -> (Vec3<F>, Vec3<F>) {
-    let p = &node.planes;
-    (Vec3::splat([p[x][i], p[1 + y][i], p[2 + z][i]]), Vec3::splat([p[3 - x][i], p[4 - y][i], p[5 - z][i]]))
-}
-
-/// The children whose boxes touch a box.
-#[inline(always)]
-fn near_to<F: Float>(node: &WideNode<N>, [x, y, z]: &[[f32; 2]; 3]) -> u32 {
-    let p = &node.planes;
-    let x = F::load(&p[0]).le(F::splat(x[1])) & F::splat(x[0]).le(F::load(&p[3]));
-    let y = F::load(&p[1]).le(F::splat(y[1])) & F::splat(y[0]).le(F::load(&p[4]));
-    let z = F::load(&p[2]).le(F::splat(z[1])) & F::splat(z[0]).le(F::load(&p[5]));
-    (x & y & z).bitmask()
-}
-
-/// Which boxes any of the rays may meet, and where the first may enter them.
-#[inline(always)]
-fn meet<F: Float>(node: &WideNode<N>, [x, y, z]: [usize; 3], rays: &Interval<F>, reach: f32) -> (F, F::Mask) {
-    let p = &node.planes;
-    let near = Vec3 { x: F::load(&p[x]), y: F::load(&p[1 + y]), z: F::load(&p[2 + z]) };
-    let far = Vec3 { x: F::load(&p[3 - x]), y: F::load(&p[4 - y]), z: F::load(&p[5 - z]) };
-    let (t_near, t_far) = rays.between(near, far, F::splat(reach));
-    (t_near, t_near.le(t_far))
 }
 
 /// A child goes to the stack: below those nearer that came there since `bottom`, above the farther.
