@@ -22,7 +22,8 @@ pub(super) fn read(path: &Path, progress: &dyn Progress) -> Result<Vec<u8>, Erro
         Some("gz") => ("gzip", MultiGzDecoder::new(source).read_to_end(&mut bytes).map(|_| ())),
         Some("zst") => ("zstd", unpack_zstd(source, &mut bytes)),
         _ => {
-            bytes.reserve(usize::try_from(size).unwrap_or(0));
+            let room = bytes.try_reserve(usize::try_from(size).unwrap_or(usize::MAX));
+            room.map_err(|_| io("read")(io::ErrorKind::OutOfMemory.into()))?;
             ("", { source }.read_to_end(&mut bytes).map(|_| ()))
         }
     };

@@ -130,6 +130,14 @@ fn places_that_cannot_be_written() {
     ] {
         folder.fails(command, 1, &["cannot create none/out.", "No such file"]);
     }
+    // Known before the long work: of these the scene does not even exist.
+    for command in [
+        "render no.obj -o none/a.png",
+        "render no.obj --integrator ao --cost none/a.png",
+        "trace no.obj --rays r.npy --hits none/a.npy",
+    ] {
+        folder.fails(command, 1, &["cannot create none/a."]);
+    }
 }
 
 /// A device that is always full stands for a full disk.

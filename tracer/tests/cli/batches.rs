@@ -130,6 +130,10 @@ fn the_same_bytes_whatever_traces() {
             "--build high",
             "--slab conservative",
             "--repeat 2",
+            "--method divide-conquer",
+            "--method divide-conquer --threads 2 --reorder hash",
+            "--method breadth-first --reorder origin",
+            "--method auto --reorder direction",
         ]
         .map(String::from),
     );

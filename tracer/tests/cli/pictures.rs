@@ -88,6 +88,18 @@ fn an_obj_without_camera_and_lights_is_framed_and_lit() {
 }
 
 #[test]
+fn a_method_without_a_tree_builds_none() {
+    let folder = Folder::with("squares.obj", SQUARES);
+    let [with, without] = ["packet", "divide-conquer"]
+        .map(|method| folder.json(&format!("render squares.obj --size 50x40 --json --method {method}")));
+    assert_eq!((&with["build"], &without["build"]), (&"medium".into(), &"none".into()));
+    assert_eq!((with["nodes"].as_u64() > Some(0), without["nodes"].as_u64()), (true, Some(0)));
+    assert_eq!((&with["hits_hash"], &with["image_hash"]), (&without["hits_hash"], &without["image_hash"]));
+    let out = folder.run("render squares.obj --size 50x40 --method divide-conquer");
+    assert!(out.contains("tree      none, triangles taken apart in "), "{out}");
+}
+
+#[test]
 fn cameras() {
     let folder = Folder::with("squares.obj", SQUARES);
     let away = folder.json("render squares.obj --size 8x8 --json --camera -0.5,0.5,5/-0.5,0.5,9");

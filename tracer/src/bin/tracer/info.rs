@@ -2,7 +2,8 @@
 
 use crate::args::{self, BuildOptions, LevelOption, ThreadsOption};
 use crate::console::Console;
-use crate::{machine, workload};
+use crate::machine;
+use crate::workload::{self, Built};
 use indicatif::{HumanBytes, HumanCount};
 use serde::Serialize;
 use std::fmt::Write;
@@ -103,7 +104,7 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
 
 fn measure(spec: &str, args: &Args, console: &Console) -> Result<SceneReport, Error> {
     let (scene, load_ms) = workload::open(spec, console)?;
-    let (bvh, build_ms) = workload::build(&scene.mesh, &args.build, console)?;
+    let Built { bvh, name: build, ms: build_ms } = Built::new(&scene.mesh, &args.build, console)?;
     let stats = bvh.stats();
     let epo_cost = if args.epo { Some(bvh.epo_cost(console)?) } else { None };
     console.clear();
@@ -113,7 +114,7 @@ fn measure(spec: &str, args: &Args, console: &Console) -> Result<SceneReport, Er
         name: scene.name,
         triangles,
         degenerate: triangles - stats.triangles,
-        build: args.build.name(),
+        build,
         nodes: stats.nodes,
         leaves: stats.leaves,
         mean_leaf: stats.mean_leaf,

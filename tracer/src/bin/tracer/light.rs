@@ -7,7 +7,7 @@ use crate::method::{MethodChoice, reordered};
 use crate::picture::{self, Kind};
 use crate::render::Args;
 use crate::report::{Subject, Written};
-use crate::workload::{Workload, mrays_per_s, ms};
+use crate::workload::{Structure, Workload, mrays_per_s, ms};
 use clap::ValueEnum;
 use indicatif::HumanCount;
 use serde::Serialize;
@@ -60,7 +60,7 @@ pub struct LightOptions {
     layers: bool,
     /// Show the number of rays of each pixel in false colours, in a .png, for whitted, ao and path
     #[arg(long, value_name = "FILE")]
-    cost: Option<PathBuf>,
+    pub cost: Option<PathBuf>,
     /// Brighten a .png by so many stops
     #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
     exposure: Option<f32>,
@@ -243,7 +243,7 @@ struct Report {
 }
 
 /// Renders, writes and reports, on the current rayon pool.
-pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Error> {
+pub fn picture(args: &Args, work: &Workload, structure: &Structure, console: &Console) -> Result<(), Error> {
     let config = args.light.config(args)?;
     let scene = &work.scene;
     let camera = args.picture.camera.unwrap_or_else(|| scene.camera_or_default());
@@ -252,10 +252,9 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
         None => Scenery::new(scene, &camera),
     };
     let choice = args.trace.method(MethodChoice::Auto)?;
-    let tree = choice.tree(&work.bvh)?;
-    let method = choice.over(&work.bvh, &tree, config.level, config.lanes, args.trace.form());
+    let method = choice.over(&structure.tree, config.level, config.lanes, args.trace.form());
     let reorder = args.trace.reorder.reorder;
-    let method = reordered(method, &work.bvh, config.level, reorder);
+    let method = reordered(method, &scene.mesh.bounds(), config.level, reorder);
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     let means = Means { method: &*method, cx: &mut cx, observer: None, progress: console };
     let (rendering, samples_before) = args.checkpoint.render(scene, &scenery, camera, &config, means, console)?;
@@ -273,7 +272,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     };
     let total_ms = ms(times.total());
     let report = Report {
-        subject: Subject::new(work, &camera, size),
+        subject: Subject::new(work, structure, &camera, size),
         integrator: args.light.integrator.to_possible_value().map(|v| v.get_name().to_owned()).unwrap_or_default(),
         samples,
         samples_before,

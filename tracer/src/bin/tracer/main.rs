@@ -22,8 +22,10 @@ mod workload;
 use args::{BuildOptions, PictureOptions};
 use clap::{Parser, Subcommand};
 use console::Console;
+use method::MethodChoice;
 use std::process::ExitCode;
 use tracer::Error;
+use workload::{Built, Structure, Workload};
 
 /// Ray tracing on portable SIMD: the same hits, bit for bit, on every instruction set.
 ///
@@ -84,10 +86,12 @@ fn main() -> ExitCode {
 fn first_look(console: &Console) -> Result<ExitCode, Error> {
     let pool = args::pool(None)?;
     let picture = PictureOptions::default();
-    let work = pool.install(|| workload::Workload::load("balls", &BuildOptions::default(), console))?;
-    let render = render::Args::default();
-    pool.install(|| render::picture(&render, &work, console))?;
+    let work = pool.install(|| Workload::open("balls", console))?;
+    let built = pool.install(|| Built::new(&work.scene.mesh, &BuildOptions::default(), console))?;
+    let structure = Structure::new(MethodChoice::Packet, &work.scene.mesh, || Ok(built.clone()))?;
+    pool.install(|| render::picture(&render::Args::default(), &work, &structure, console))?;
     console.print("\n")?;
-    let report = compare::measure(&work, Default::default(), &picture, compare::DEFAULT_REPEAT, &pool, console)?;
+    let report =
+        compare::measure(&work, &built, Default::default(), &picture, compare::DEFAULT_REPEAT, &pool, console)?;
     compare::show(&report, compare::Format::Table, None, console)
 }

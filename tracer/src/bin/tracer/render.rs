@@ -8,7 +8,7 @@ use crate::light::{self, LightOptions};
 use crate::method::{MethodChoice, reordered};
 use crate::picture;
 use crate::report::{Subject, Written};
-use crate::workload::{Workload, mrays_per_s, ms};
+use crate::workload::{Built, Structure, Workload, mrays_per_s, ms};
 use indicatif::HumanCount;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -84,25 +84,30 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
         picture::Kind::of(path)?;
     }
     args.trace.level.choose()?;
-    args.trace.method(MethodChoice::Packet)?;
+    let is_eye = args.light.integrator == light::Choice::Eye;
+    let method = args.trace.method(if is_eye { MethodChoice::Packet } else { MethodChoice::Auto })?;
     args.light.check(args)?;
+    args::check_folder(args.output.as_deref())?;
+    args::check_folder(args.light.cost.as_deref())?;
     let build = args.light.without_own_seed(&args.build);
     build.config()?;
     args.picture.size.check()?;
     let pool = args::pool(args.trace.threads.threads)?;
     pool.install(|| {
-        let work = Workload::load(args.scene.as_deref().unwrap_or("balls"), &build, console)?;
-        if args.light.integrator == light::Choice::Eye {
-            picture(args, &work, console)
+        let work = Workload::open(args.scene.as_deref().unwrap_or("balls"), console)?;
+        let mesh = &work.scene.mesh;
+        let structure = Structure::new(method, mesh, || Built::new(mesh, &build, console))?;
+        if is_eye {
+            picture(args, &work, &structure, console)
         } else {
-            light::picture(args, &work, console)
+            light::picture(args, &work, &structure, console)
         }
     })?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// Renders, writes and reports, on the current rayon pool.
-pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Error> {
+pub fn picture(args: &Args, work: &Workload, structure: &Structure, console: &Console) -> Result<(), Error> {
     let (level, _) = args.trace.level.choose()?;
     let size = args.picture.size;
     let scene = &work.scene;
@@ -110,10 +115,9 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let (lanes, shadows) = (args.trace.width, args.picture.shadows);
     let settings = Settings { width: size.width, height: size.height, level, lanes, shadows };
     let choice = args.trace.method(MethodChoice::Packet)?;
-    let tree = choice.tree(&work.bvh)?;
-    let method = choice.over(&work.bvh, &tree, level, lanes, args.trace.form());
+    let method = choice.over(&structure.tree, level, lanes, args.trace.form());
     let reorder = args.trace.reorder.reorder;
-    let method = reordered(method, &work.bvh, level, reorder);
+    let method = reordered(method, &scene.mesh.bounds(), level, reorder);
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
 
     console.stage("render", 4);
@@ -136,7 +140,7 @@ pub fn picture(args: &Args, work: &Workload, console: &Console) -> Result<(), Er
     let output_bytes = picture::write(&args.light.developed(&image, &output), &output)?;
     let rays = size.pixels() + if shadows { hits * scene.lights_or_headlight(&camera).len() } else { 0 };
     let report = Report {
-        subject: Subject::new(work, &camera, [size.width, size.height]),
+        subject: Subject::new(work, structure, &camera, [size.width, size.height]),
         shadows,
         level: level.to_string(),
         method: choice.name(),

@@ -1,6 +1,6 @@
 //! What reports of pictures have in common.
 
-use crate::workload::Workload;
+use crate::workload::{Structure, Workload};
 use indicatif::{HumanBytes, HumanCount};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -21,14 +21,14 @@ pub struct Subject {
 }
 
 impl Subject {
-    pub fn new(work: &Workload, camera: &Camera, [width, height]: [usize; 2]) -> Self {
+    pub fn new(work: &Workload, structure: &Structure, camera: &Camera, [width, height]: [usize; 2]) -> Self {
         Self {
             scene: work.scene.name.clone(),
             triangles: work.scene.mesh.triangles.len(),
-            nodes: work.bvh.nodes.len(),
-            build: work.build,
+            nodes: structure.nodes,
+            build: structure.build,
             load_ms: work.load_ms,
-            build_ms: work.build_ms,
+            build_ms: structure.build_ms,
             width,
             height,
             camera: camera.to_string(),
@@ -39,10 +39,14 @@ impl Subject {
     pub fn text(&self) -> String {
         let Self { scene, load_ms, build, build_ms, camera, .. } = self;
         let [triangles, nodes] = [self.triangles, self.nodes].map(|n| HumanCount(n as u64));
+        let tree = match self.nodes {
+            0 => format!("none, triangles taken apart in {build_ms:.0} ms"),
+            _ => format!("{build}, {nodes} nodes, built in {build_ms:.0} ms"),
+        };
         format!(
             "\
 scene     {scene}, {triangles} triangles, read in {load_ms:.0} ms
-tree      {build}, {nodes} nodes, built in {build_ms:.0} ms
+tree      {tree}
 camera    {camera}
 "
         )

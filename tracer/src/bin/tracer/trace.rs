@@ -4,7 +4,7 @@ use crate::args::{self, BuildOptions, TraceOptions};
 use crate::console::Console;
 use crate::method::{MethodChoice, reordered};
 use crate::npy;
-use crate::workload::{self, median, mrays_per_s, ms};
+use crate::workload::{self, Built, Structure, median, mrays_per_s, ms};
 use cpu_time::{ProcessTime, ThreadTime};
 use indicatif::HumanCount;
 use serde::Serialize;
@@ -13,8 +13,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use tracer::Error;
-use tracer::bvh::Bvh;
-use tracer::geometry::{HitBatch, RayBatch};
+use tracer::geometry::{Aabb, HitBatch, RayBatch};
 use tracer::method::{BitVec, Context};
 use tracer::progress::Progress;
 
@@ -79,16 +78,19 @@ struct Report {
 pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
     args.trace.level.choose()?;
     args.build.config()?;
+    let method = args.trace.method(MethodChoice::Auto)?;
+    args::check_folder(Some(&args.hits))?;
     let pool = args::pool(args.trace.threads.threads)?;
     let report = pool.install(|| {
         let rays = npy::read_rays(&args.rays, console)?;
         let (scene, _) = workload::open(&args.scene, console)?;
-        let (bvh, build_ms) = workload::build(&scene.mesh, &args.build, console)?;
-        let (name, triangles) = (scene.name, scene.mesh.triangles.len());
-        // The tree has all that is needed: make room for the hits.
+        let mesh = &scene.mesh;
+        let structure = Structure::new(method, mesh, || Built::new(mesh, &args.build, console))?;
+        let (name, triangles, bounds) = (scene.name, mesh.triangles.len(), mesh.bounds());
+        // All that is needed was made of it: make room for the hits.
         drop(scene.mesh);
-        let report = trace(args, &bvh, &rays, console)?;
-        Ok(Report { scene: name, triangles, build_ms, ..report })
+        let report = trace(args, &structure, &bounds, &rays, console)?;
+        Ok(Report { scene: name, triangles, ..report })
     })?;
     if args.json {
         console.print_json(&report)?
@@ -99,13 +101,18 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
 }
 
 /// Traces and writes the hits; what concerns the scene is left for the caller to tell.
-fn trace(args: &Args, bvh: &Bvh, rays: &RayBatch, console: &Console) -> Result<Report, Error> {
+fn trace(
+    args: &Args,
+    structure: &Structure,
+    bounds: &Aabb,
+    rays: &RayBatch,
+    console: &Console,
+) -> Result<Report, Error> {
     let (level, _) = args.trace.level.choose()?;
     let choice = args.trace.method(MethodChoice::Auto)?;
-    let tree = choice.tree(bvh)?;
-    let method = choice.over(bvh, &tree, level, args.trace.width, args.trace.form());
+    let method = choice.over(&structure.tree, level, args.trace.width, args.trace.form());
     let reorder = args.trace.reorder.reorder;
-    let method = reordered(method, bvh, level, reorder);
+    let method = reordered(method, bounds, level, reorder);
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     let (mut hits, mut occluded) = (HitBatch::new(), BitVec::new());
     console.stage("trace", args.repeat.get() as u64);
@@ -135,8 +142,8 @@ fn trace(args: &Args, bvh: &Bvh, rays: &RayBatch, console: &Console) -> Result<R
         triangles: 0,
         rays: rays.len(),
         hits: number,
-        build: args.build.name(),
-        build_ms: 0.0,
+        build: structure.build,
+        build_ms: structure.build_ms,
         trace_ms,
         wall_ms,
         mrays_per_s: mrays_per_s(rays.len(), if threads == 1 { trace_ms } else { wall_ms }),

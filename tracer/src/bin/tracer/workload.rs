@@ -3,6 +3,8 @@
 use crate::args::BuildOptions;
 use crate::console::Console;
 use crate::machine;
+use crate::method::{MethodChoice, Tree};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tracer::Error;
 use tracer::bvh::Bvh;
@@ -10,27 +12,67 @@ use tracer::model::{Builtin, Mesh, Model};
 use tracer::progress::Progress;
 use tracer::render::Surfaces;
 
-/// A scene with its tree.
+/// A scene to be seen.
 pub struct Workload {
     pub scene: Model,
     pub surfaces: Surfaces,
-    pub bvh: Bvh,
     /// Whether it is none from a file.
     pub built_in: bool,
-    /// The builder's name.
-    pub build: &'static str,
     pub load_ms: f64,
-    pub build_ms: f64,
 }
 
 impl Workload {
     /// On the current rayon pool.
-    pub fn load(spec: &str, options: &BuildOptions, console: &Console) -> Result<Self, Error> {
+    pub fn open(spec: &str, console: &Console) -> Result<Self, Error> {
         let (scene, load_ms) = open(spec, console)?;
-        let (bvh, build_ms) = build(&scene.mesh, options, console)?;
         scene.validate()?;
         let (surfaces, built_in) = (Surfaces::new(&scene), built_in(spec).is_some());
-        Ok(Self { scene, surfaces, bvh, built_in, build: options.name(), load_ms, build_ms })
+        Ok(Self { scene, surfaces, built_in, load_ms })
+    }
+}
+
+/// The binary tree over a scene.
+#[derive(Clone)]
+pub struct Built {
+    pub bvh: Arc<Bvh>,
+    /// The builder's name.
+    pub name: &'static str,
+    pub ms: f64,
+}
+
+impl Built {
+    /// On the current rayon pool.
+    pub fn new(mesh: &Mesh, options: &BuildOptions, console: &Console) -> Result<Self, Error> {
+        let config = options.config()?;
+        let start = Instant::now();
+        let bvh = Arc::new(Bvh::build(mesh, &config, console)?);
+        let ms = ms(start.elapsed());
+        console.clear();
+        Ok(Self { bvh, name: options.name(), ms })
+    }
+}
+
+/// What a method goes through, and what it took.
+pub struct Structure {
+    pub tree: Tree,
+    /// The builder's name; `none` where the method wants no tree.
+    pub build: &'static str,
+    /// Of the binary tree.
+    pub nodes: usize,
+    /// To build that and to make of it what the method wants.
+    pub build_ms: f64,
+}
+
+impl Structure {
+    /// For a method; the binary tree is asked for if it wants one.
+    pub fn new(choice: MethodChoice, mesh: &Mesh, built: impl FnOnce() -> Result<Built, Error>) -> Result<Self, Error> {
+        let (mut build, mut nodes, mut before, mut start) = ("none", 0, 0.0, Instant::now());
+        let tree = choice.tree(mesh, || {
+            let Built { bvh, name, ms } = built()?;
+            (build, nodes, before, start) = (name, bvh.nodes.len(), ms, Instant::now());
+            Ok(bvh)
+        })?;
+        Ok(Self { tree, build, nodes, build_ms: before + ms(start.elapsed()) })
     }
 }
 
@@ -58,16 +100,6 @@ pub fn check_size(which: Builtin, size: u32) -> Result<(), Error> {
     const BYTES_PER_TRIANGLE: u64 = 300;
     let Some(triangles) = which.triangles(size) else { return Ok(()) };
     machine::check_memory(BYTES_PER_TRIANGLE * triangles as u64, &format!("{}:{size}", which.name()))
-}
-
-/// The tree over a mesh, and the milliseconds it took.
-pub fn build(mesh: &Mesh, options: &BuildOptions, console: &Console) -> Result<(Bvh, f64), Error> {
-    let config = options.config()?;
-    let start = Instant::now();
-    let bvh = Bvh::build(mesh, &config, console)?;
-    let build_ms = ms(start.elapsed());
-    console.clear();
-    Ok((bvh, build_ms))
 }
 
 /// Milliseconds.

@@ -5,14 +5,15 @@ use crate::args::{self, PictureOptions};
 use crate::console::Console;
 use crate::machine;
 use crate::method::{MethodChoice, Tree, reordered};
-use crate::workload::{Workload, median, mrays_per_s, ms};
+use crate::workload::{Built, Workload, median, mrays_per_s, ms};
 use cpu_time::ThreadTime;
 use rayon::ThreadPool;
 use simd::{Isa, Level};
 use std::num::NonZeroUsize;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tracer::Error;
-use tracer::geometry::HitBatch;
+use tracer::geometry::{Aabb, HitBatch};
 use tracer::method::{Context, Method, Packet, SlabForm, Width};
 use tracer::model::Camera;
 use tracer::progress::Progress;
@@ -45,8 +46,12 @@ struct Sample {
 /// What all frames have in common.
 struct Task<'a> {
     work: &'a Workload,
+    built: &'a Built,
+    /// Of packets.
+    binary: Tree,
     /// Of the method that is compared.
     tree: Tree,
+    bounds: Aabb,
     camera: Camera,
     options: &'a PictureOptions,
     console: &'a Console,
@@ -55,6 +60,7 @@ struct Task<'a> {
 /// Measures every level and width of this CPU, by a method after an order of the rays; `pool` has all threads.
 pub fn measure(
     work: &Workload,
+    built: &Built,
     (method, reorder): (MethodChoice, Reorder),
     options: &PictureOptions,
     repeat: NonZeroUsize,
@@ -63,8 +69,10 @@ pub fn measure(
 ) -> Result<Report, Error> {
     let load_average = machine::load_average();
     let camera = options.camera.unwrap_or_else(|| work.scene.camera_or_default());
-    let tree = pool.install(|| method.tree(&work.bvh))?;
-    let task = Task { work, tree, camera, options, console };
+    let bvh = &built.bvh;
+    let tree = pool.install(|| method.tree(&work.scene.mesh, || Ok(Arc::clone(bvh))))?;
+    let (binary, bounds) = (Tree::Binary(Arc::clone(bvh)), work.scene.mesh.bounds());
+    let task = Task { work, built, binary, tree, bounds, camera, options, console };
     let one = args::pool(NonZeroUsize::new(1))?;
     let mut cases = cases(method, reorder);
     console.stage("compare", (cases.len() * (repeat.get() + 1)) as u64);
@@ -149,9 +157,9 @@ impl Task<'_> {
     fn frame(&self, case: &Case, now: &dyn Fn() -> Duration) -> Result<Sample, Error> {
         let mut cx = Context { counters: None, cancel: Some(self.console.cancel()) };
         // The rows in emulation need no other tree.
-        let tree = if case.method == MethodChoice::Packet { &Tree::Binary } else { &self.tree };
-        let method = case.method.over(&self.work.bvh, tree, case.level, case.width, SlabForm::Exact);
-        let method = reordered(method, &self.work.bvh, case.level, case.reorder);
+        let tree = if case.method == MethodChoice::Packet { &self.binary } else { &self.tree };
+        let method = case.method.over(tree, case.level, case.width, SlabForm::Exact);
+        let method = reordered(method, &self.bounds, case.level, case.reorder);
         let mut frame = Frame::new(&self.work.scene, &self.work.surfaces, self.camera, self.settings(case));
         let start = now();
         frame.eye_rays();
@@ -180,7 +188,7 @@ impl Task<'_> {
         let eye = EyeRays::new(&self.camera, size.width, size.height, level, Width::Auto);
         let counts = |width| {
             let mut cx = Context { counters: Some(Counters::default()), cancel: Some(self.console.cancel()) };
-            Packet::new(&self.work.bvh, level, width).closest(eye.rays(), &mut HitBatch::new(), &mut cx)?;
+            Packet::new(&self.built.bvh, level, width).closest(eye.rays(), &mut HitBatch::new(), &mut cx)?;
             let counters = cx.counters.unwrap_or_default();
             let per_ray = |n: u64| n as f64 / size.pixels() as f64;
             Ok([per_ray(counters.box_tests), per_ray(counters.triangle_tests)])
@@ -217,7 +225,7 @@ impl Task<'_> {
         Report {
             scene: scene.name.clone(),
             triangles: scene.mesh.triangles.len(),
-            build: self.work.build,
+            build: self.built.name,
             width: size.width,
             height: size.height,
             camera: self.camera.to_string(),

@@ -10,7 +10,7 @@ pub use measure::measure;
 use crate::args::{self, BuildOptions, PictureOptions, ReorderOption, ThreadsOption};
 use crate::console::{Console, json};
 use crate::method::MethodChoice;
-use crate::workload::Workload;
+use crate::workload::{Built, Workload};
 use clap::ValueEnum;
 use report::Report;
 use std::num::NonZeroUsize;
@@ -86,10 +86,13 @@ pub fn run(args: &Args, console: &Console) -> Result<ExitCode, Error> {
     args.build.config()?;
     args.picture.size.check()?;
     let output = args.output.as_deref();
+    args::check_folder(output)?;
     let format = args.format.or_else(|| output.map(Format::of)).unwrap_or(Format::Table);
     let pool = args::pool(args.threads.threads)?;
-    let work = pool.install(|| Workload::load(&args.scene, &args.build, console))?;
-    let report = measure(&work, (args.method, args.reorder.reorder), &args.picture, args.repeat, &pool, console)?;
+    let work = pool.install(|| Workload::open(&args.scene, console))?;
+    let built = pool.install(|| Built::new(&work.scene.mesh, &args.build, console))?;
+    let report =
+        measure(&work, &built, (args.method, args.reorder.reorder), &args.picture, args.repeat, &pool, console)?;
     show(&report, format, output, console)
 }
 
