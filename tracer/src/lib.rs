@@ -44,7 +44,7 @@
 //!
 //! What comes later knows what comes before it, never the other way round.
 //!
-//! - [`model`]: meshes, materials, lights, cameras; OBJ and PLY files; procedural scenes.
+//! - [`model`]: meshes, materials, textures, lights, cameras; OBJ, PLY and glTF files; procedural scenes.
 //! - [`geometry`]: boxes, triangles, rays and hits, and how they meet.
 //! - [`bvh`]: the tree and its builders.
 //! - [`method`]: ways of finding hits, behind one interface.
@@ -53,10 +53,17 @@
 //! - [`World`]: scenes at many places, and surfaces that are no triangles.
 //! - [`render`]: pictures, in three passes; with secondary rays, [`render::integrator`].
 //!
-//! Features `glam` and `mint` add conversions to and from the types of those crates: module `interop`.
+//! - [`progress`], [`stats`], [`output`], [`error`]: progress and an end to it, counters, files written whole or not at all, what can go wrong.
+//!
+//! # Features
+//!
+//! - `cli` (default): the command and what it needs; a library turns it off with `default-features = false`.
+//! - `gltf` and `textures`: read such files; both are part of `cli`.
+//! - `glam` and `mint`: conversions to and from the types of those crates: module `interop`.
 #![forbid(unsafe_code)]
 
 pub mod bvh;
+mod clock;
 pub mod error;
 pub mod geometry;
 mod hash;

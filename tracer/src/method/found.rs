@@ -1,23 +1,11 @@
-//! What is asked of a packet, closest or any, and what it knows so far, in registers.
+//! What a query knows so far of the rays of a packet, in registers.
 
 use crate::geometry::moller_trumbore::Candidate;
 use crate::geometry::{Hit, HitBlock, Packet as Rays};
 use simd::{Float, Mask, Vector};
 
-/// Closest or any.
-pub(in crate::method) trait Query {
-    /// Results of a block of rays.
-    type Block: Send + Clone;
-    type Found<F: Float>: Found<F, Block = Self::Block>;
-    /// No ray hits anything.
-    const NOTHING: Self::Block;
-
-    /// Puts down what one ray hit.
-    fn put(block: &mut Self::Block, lane: usize, hit: &Hit);
-}
-
-/// What a query knows of each lane so far.
-pub(in crate::method) trait Found<F: Float> {
+/// What a query knows of each lane so far: see [`Query`](super::query::Query).
+pub(crate) trait Found<F: Float> {
     type Block;
     fn new(ray: &Rays<F>) -> Self;
     /// How far along its ray a hit still matters.
@@ -28,22 +16,8 @@ pub(in crate::method) trait Found<F: Float> {
     fn store(self, block: &mut Self::Block, chunk: usize);
 }
 
-pub(in crate::method) struct Closest;
-impl Query for Closest {
-    type Block = HitBlock;
-    type Found<F: Float> = ClosestHit<F>;
-    const NOTHING: HitBlock = HitBlock::MISS;
-
-    #[inline(always)]
-    fn put(block: &mut HitBlock, lane: usize, hit: &Hit) {
-        block.t.0[lane] = hit.t;
-        block.u.0[lane] = hit.u;
-        block.v.0[lane] = hit.v;
-        block.primitive.0[lane] = hit.primitive;
-    }
-}
-
-pub(in crate::method) struct ClosestHit<F: Float> {
+/// The nearest hits.
+pub(crate) struct ClosestHit<F: Float> {
     t: F,
     u: F,
     v: F,
@@ -91,19 +65,8 @@ impl<F: Float> Found<F> for ClosestHit<F> {
     }
 }
 
-pub(in crate::method) struct Any;
-impl Query for Any {
-    type Block = u16;
-    type Found<F: Float> = Occluded<F>;
-    const NOTHING: u16 = 0;
-
-    #[inline(always)]
-    fn put(block: &mut u16, lane: usize, _: &Hit) {
-        *block |= 1 << lane;
-    }
-}
-
-pub(in crate::method) struct Occluded<F: Float> {
+/// Whether there are hits.
+pub(crate) struct Occluded<F: Float> {
     /// Minus infinity where something was hit: such a lane meets no box any more.
     reach: F,
     hit: F::Mask,

@@ -4,6 +4,7 @@ mod auto;
 mod breadth_first;
 pub(crate) mod chosen;
 mod divide_conquer;
+mod found;
 pub(crate) mod nearest;
 mod packet;
 pub(crate) mod query;

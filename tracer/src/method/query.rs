@@ -1,5 +1,6 @@
-//! What is asked of rays, closest or any, for methods that keep the best hit of sixteen rays in memory.
+//! What is asked of rays, closest or any, and the best hits of sixteen rays in memory.
 
+use super::found::{ClosestHit, Found, Occluded};
 use crate::geometry::moller_trumbore::Candidate;
 use crate::geometry::{Hit, HitBlock};
 use simd::{Block, Float, Vector};
@@ -8,6 +9,8 @@ use simd::{Block, Float, Vector};
 pub(crate) trait Query {
     /// Results of a block of rays.
     type Block: Send + Clone;
+    /// What is known of each lane so far, for methods that keep it in registers.
+    type Found<F: Float>: Found<F, Block = Self::Block>;
     /// No ray hits anything.
     const NOTHING: Self::Block;
     const CLOSEST: bool;
@@ -42,6 +45,7 @@ pub(crate) trait Query {
 pub(crate) struct Closest;
 impl Query for Closest {
     type Block = HitBlock;
+    type Found<F: Float> = ClosestHit<F>;
     const NOTHING: HitBlock = HitBlock::MISS;
     const CLOSEST: bool = true;
 
@@ -88,6 +92,7 @@ impl Query for Closest {
 pub(crate) struct Any;
 impl Query for Any {
     type Block = u16;
+    type Found<F: Float> = Occluded<F>;
     const NOTHING: u16 = 0;
     const CLOSEST: bool = false;
 

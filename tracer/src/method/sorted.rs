@@ -89,9 +89,10 @@ impl<M: Method> Method for Sorted<M> {
         "Garanzha and Loop 2010, section 3.1"
     }
 
-    /// The method's. What sorts takes some 150 bytes for each ray of the largest batch beside.
     fn memory(&self) -> usize {
-        self.method.memory()
+        let memory = self.memory.lock().unwrap_or_else(PoisonError::into_inner);
+        let bytes = |m: &Memory| m.sorter.bytes() + size_of_val(m.hits.blocks()) + size_of_val(m.occluded.words());
+        self.method.memory() + memory.iter().map(bytes).sum::<usize>()
     }
 
     fn closest(&self, rays: &RayBatch, hits: &mut HitBatch, cx: &mut Context<'_>) -> Result<(), Error> {

@@ -71,6 +71,12 @@ impl RaySort {
         })
     }
 
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        let words = self.hashes.capacity() + self.bases.capacity() + 2 * self.heads.capacity();
+        self.radix.bytes() + size_of::<u32>() * words
+    }
+
     /// Marks where runs begin; returns how many do in each chunk.
     fn find_runs(&mut self, level: Level, hashes: &[u32]) -> Vec<usize> {
         let len = hashes.len();

@@ -3,9 +3,6 @@
 //! Arrays that do not fit into the second-level cache are first parted by their highest digit, once through memory; the parts are then sorted from
 //! the lowest digit to the highest, in the cache. A pass in the cache takes half the time of one through memory, and parts are what threads
 //! take. Both ways of sorting are stable, so the order is the same whatever the parts.
-//!
-//! Digits of the parts have up to 12 bits: four thousand lines that are written to in turn still lie in the second-level cache, and 24 bits
-//! take two passes instead of three.
 
 mod digits;
 mod parts;
@@ -24,7 +21,8 @@ const LARGE: usize = 1 << 18;
 const SMALL: usize = 64;
 
 /// A stable sort of keys with values, and the memory it needs, which is used again: 8 bytes for each key of 32 bits, 16 for each of 64,
-/// and some megabytes for each thread.
+/// and some megabytes for each thread. Where very many keys have the same highest byte and differ in the next, they take as much again while they are
+/// sorted.
 ///
 /// ```
 /// let (mut keys, mut values) = ([5, 1, 5, 0], [0, 1, 2, 3]);
@@ -59,6 +57,11 @@ impl RadixSort {
     pub fn sort_64(&mut self, keys: &mut [u64], values: &mut [u32]) {
         self.long.sort(keys, values);
     }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        self.short.bytes() + self.long.bytes()
+    }
 }
 
 /// What is used again.
@@ -73,11 +76,16 @@ impl<R: Record> Memory<R> {
         Self { records: Vec::new(), room: Room([const { Vec::new() }; 2]) }
     }
 
+    fn bytes(&self) -> usize {
+        let room = self.room.0.iter().map(Vec::capacity).sum::<usize>();
+        size_of::<R>() * (self.records.capacity() + room)
+    }
+
     fn sort(&mut self, keys: &mut [R::Key], values: &mut [u32]) {
         let len = keys.len();
         assert!(values.len() == len, "{len} keys with {} values", values.len());
         assert!(u32::try_from(len).is_ok(), "{len} keys are too many to sort");
-        let bytes = differing_bytes::<R>(keys);
+        let bytes = differing_bytes(keys.iter().map(|&key| key.into()));
         if bytes == 0 {
             return;
         }
@@ -104,16 +112,18 @@ fn long_enough<R: Record>(memory: &mut Vec<R>, len: usize) -> &mut [R] {
 }
 
 /// The number of low bytes in which keys differ: above them they are all the same.
-fn differing_bytes<R: Record>(keys: &[R::Key]) -> usize {
-    let Some(&first) = keys.first() else { return 0 };
-    let first: u64 = first.into();
-    let differing = keys.iter().fold(0, |bits, &key| bits | (key.into() ^ first));
+fn differing_bytes(mut keys: impl Iterator<Item = u64>) -> usize {
+    let Some(first) = keys.next() else { return 0 };
+    let differing = keys.fold(0, |bits, key| bits | (key ^ first));
     (u64::BITS - differing.leading_zeros()).div_ceil(8) as usize
 }
 
 /// Sorts records by the lowest `bytes` bytes of their keys, and writes them to `out`.
 fn sort<R: Record>(records: &[R], out: Arrays<'_, R>, bytes: usize, room: &mut Room<R>) {
     let len = records.len();
+    // A byte that is the same in all of them is no reason to move them.
+    let differing = || differing_bytes(records.iter().map(|record| record.key().into()));
+    let bytes = if len > LARGE { differing().min(bytes) } else { bytes };
     if len > LARGE && bytes > 1 {
         let mut parted = Vec::new();
         let parted = long_enough(&mut parted, len);

@@ -88,6 +88,14 @@ impl RaySorter {
         &self.rays
     }
 
+    /// Bytes held.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let words = self.hashes.capacity() + self.order.capacity() + self.places.capacity();
+        let rows = size_of::<[f32; 8]>() * self.rows.capacity() + size_of::<[u32; 4]>() * self.hits.capacity();
+        self.sort.bytes() + size_of::<u32>() * words + rows + size_of_val(self.rays.blocks())
+    }
+
     /// The rays that were gathered last.
     #[must_use]
     pub fn rays(&self) -> &RayBatch {

@@ -16,6 +16,14 @@ pub(super) struct Frusta {
     pub(super) odd: Vec<(u32, u16)>,
 }
 
+impl Frusta {
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        let (all, ends, odd) = (self.all.capacity(), self.ends.capacity(), self.odd.capacity());
+        size_of::<Frustum>() * all + size_of::<u32>() * ends + size_of::<(u32, u16)>() * odd
+    }
+}
+
 /// Makes frusta around packets.
 pub(super) struct Build<'a> {
     pub(super) rays: &'a [RayBlock],

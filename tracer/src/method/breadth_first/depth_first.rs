@@ -8,38 +8,55 @@ use crate::lanes::{self, Lanes};
 use crate::stats;
 use simd::{Float, Level};
 
-/// Takes all frusta from the root to the leaves.
+/// More leaves than these are not waited for.
+const MANY: usize = 1 << 22;
+
+/// Takes all frusta from the root to the leaves. Where these have become many, `full` is told how many frusta are through with them, and may forget their
+/// leaves.
 pub(super) fn traverse(
     level: Level,
     tree: &OctoBvh,
     frusta: &[Frustum],
     leaves: &mut Leaves,
-    count: Option<&mut stats::Frusta>,
+    mut count: Option<&mut stats::Frusta>,
+    full: &mut dyn FnMut(&mut Leaves, usize),
 ) {
     leaves.clear(frusta.len());
-    let counted = lanes::run_eight(level, DepthFirst { tree, frusta, leaves, count: count.is_some() });
-    if let Some(count) = count {
-        count.steps += counted.steps;
-        count.box_tests += counted.box_tests;
+    let mut first = 0;
+    loop {
+        let job = DepthFirst { tree, frusta, first, leaves, count: count.is_some() };
+        let (done, counted) = lanes::run_eight(level, job);
+        if let Some(count) = &mut count {
+            count.steps += counted.steps;
+            count.box_tests += counted.box_tests;
+        }
+        if done == frusta.len() {
+            return;
+        }
+        full(leaves, done);
+        first = done;
     }
 }
 
 struct DepthFirst<'a> {
     tree: &'a OctoBvh,
     frusta: &'a [Frustum],
+    /// The first that is not done.
+    first: usize,
     leaves: &'a mut Leaves,
     count: bool,
 }
 
 impl Lanes for DepthFirst<'_> {
-    type Output = stats::Frusta;
+    /// How many are done now, and what was counted.
+    type Output = (usize, stats::Frusta);
 
     #[inline(always)]
-    fn run<F: Float>(self) -> stats::Frusta {
+    fn run<F: Float>(self) -> Self::Output {
         let rows = self.tree.rows();
         let mut counted = stats::Frusta::default();
         let mut stack = Vec::new();
-        for (i, frustum) in self.frusta.iter().enumerate() {
+        for (i, frustum) in self.frusta.iter().enumerate().skip(self.first) {
             let begin = self.leaves.nodes.len();
             stack.push(children::root(self.tree));
             while let Some(node) = stack.pop() {
@@ -60,7 +77,10 @@ impl Lanes for DepthFirst<'_> {
                 }
             }
             self.leaves.ranges[i] = [begin as u32, self.leaves.nodes.len() as u32];
+            if self.leaves.nodes.len() > begin.max(MANY) {
+                return (i + 1, counted);
+            }
         }
-        counted
+        (self.frusta.len(), counted)
     }
 }

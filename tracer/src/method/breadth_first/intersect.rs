@@ -11,9 +11,11 @@ use crate::geometry::moller_trumbore::{self, Candidate};
 use crate::geometry::slab::{self, Near, PerRay};
 use crate::geometry::{Packet as Rays, RayBlock, Triangle, Vec3};
 use crate::lanes::Lanes;
-use crate::method::packet::found::{Found, Query};
+use crate::method::found::Found;
+use crate::method::query::Query;
 use crate::stats::{Count, Counters};
 use simd::{Float, Mask};
+use std::ops::Range;
 
 /// A portion of rays, packet by packet, against the leaves of their frusta.
 pub(super) struct Intersect<'a, Q: Query, C> {
@@ -23,6 +25,8 @@ pub(super) struct Intersect<'a, Q: Query, C> {
     pub(super) rays: &'a [RayBlock],
     pub(super) results: &'a mut [Q::Block],
     pub(super) runs: Runs<'a>,
+    /// Which of them.
+    pub(super) which: Range<usize>,
     pub(super) frusta: &'a Frusta,
     pub(super) leaves: &'a Leaves,
     pub(super) count: C,
@@ -33,9 +37,11 @@ impl<Q: Query, C: Count> Lanes for Intersect<'_, Q, C> {
 
     #[inline(always)]
     fn run<F: Float>(mut self) -> Counters {
-        let mut first = 0;
+        let ends = &self.frusta.ends;
+        let mut first = self.which.start.checked_sub(1).map_or(0, |before| ends[before] as usize);
         let mut boxes = Boxes::default();
-        for (run, &end) in self.frusta.ends.iter().enumerate() {
+        for run in self.which.clone() {
+            let end = ends[run];
             let blocks = self.runs.blocks(run);
             boxes.clear();
             for frustum in first..end as usize {

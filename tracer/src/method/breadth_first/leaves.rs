@@ -36,6 +36,24 @@ impl Leaves {
         }
     }
 
+    /// No longer the leaves of the first so many frusta, all of which came before those of others; how many these were.
+    pub(super) fn forget(&mut self, frusta: usize) -> usize {
+        let (gone, rest) = self.ranges.split_at_mut(frusta);
+        let number = gone.iter().map(|range| range[1]).max().unwrap_or(0);
+        gone.fill([0; 2]);
+        for range in rest.iter_mut().filter(|range| range[1] > 0) {
+            *range = range.map(|at| at - number);
+        }
+        self.nodes.drain(..number as usize);
+        number as usize
+    }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        let words = self.nodes.capacity() + self.heads.capacity() + self.bases.capacity();
+        size_of::<u32>() * words + size_of::<[u32; 2]>() * self.ranges.capacity()
+    }
+
     /// The leaves of a frustum.
     #[inline(always)]
     pub(super) fn of(&self, frustum: usize) -> &[u32] {
@@ -58,6 +76,11 @@ mod tests {
             leaves.append(level, &[5], &[16]);
             let lists: Vec<&[u32]> = (0..7).map(|i| leaves.of(i)).collect();
             assert_eq!(lists, [&[10, 11][..], &[], &[12], &[13, 14, 15], &[], &[16], &[]]);
+            assert_eq!([leaves.forget(2), leaves.forget(2), leaves.forget(3)], [2, 0, 1]);
+            leaves.append(level, &[6, 6], &[17, 18]);
+            let lists: Vec<&[u32]> = (0..7).map(|i| leaves.of(i)).collect();
+            assert_eq!(lists, [&[][..], &[], &[], &[13, 14, 15], &[], &[16], &[17, 18]]);
+            assert_eq!(leaves.forget(7), 6);
         }
     }
 }

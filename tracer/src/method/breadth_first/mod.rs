@@ -15,10 +15,11 @@ mod tests;
 
 pub use stages::Stages;
 
-use super::packet::found::{Any, Closest};
+use super::query::{Any, Closest};
 use super::{BitVec, Context, Method};
 use crate::Error;
 use crate::bvh::{Bvh, OctoBvh};
+use crate::clock::Clock;
 use crate::geometry::frustum::Space;
 use crate::geometry::{HitBatch, RayBatch};
 use crate::lanes::Width;
@@ -26,7 +27,7 @@ use crate::sort::{RayHash, RaySorter, Reorder};
 use portion::Pool;
 use runs::Decomposition;
 use simd::Level;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// In which order frusta go through the tree. Both find the same hits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -96,10 +97,10 @@ impl<'a> BreadthFirst<'a> {
         }
     }
 
-    /// With packets of at most so many rays ("MaxSize"), in sixteens: by default 256.
+    /// With packets of at most so many rays ("MaxSize"), of which whole sixteens are taken, one at least: by default 256.
     #[must_use]
     pub fn with_packet(self, rays: usize) -> Self {
-        Self { packet: rays.clamp(16, 1 << 15).div_ceil(16), ..self }
+        Self { packet: rays.clamp(16, 1 << 15) / 16, ..self }
     }
 
     /// With queues of at most so many elements for each thread (32 bytes each, taken as they are needed), by default [`BreadthFirst::QUEUE`]. When they do not fit the batch of frusta is split in two, again and
@@ -140,7 +141,7 @@ impl<'a> BreadthFirst<'a> {
         let mut found = HitBatch::new();
         let to = found.resize(rays.len());
         let mut stages = self.trace::<Closest>(sorter.rays().blocks(), packets.runs(), to, cx)?;
-        let end = Instant::now();
+        let end = Clock::now();
         sorter.put_hits_back(&found, hits);
         stages.sort += begin + end.elapsed();
         self.pool.give_back_sorter(sorter);
@@ -158,7 +159,7 @@ impl<'a> BreadthFirst<'a> {
         let mut found = BitVec::new();
         let to = found.resize(rays.len());
         let mut stages = self.trace::<Any>(sorter.rays().blocks(), packets.runs(), to, cx)?;
-        let end = Instant::now();
+        let end = Clock::now();
         sorter.put_bits_back(&found, occluded);
         stages.sort += begin + end.elapsed();
         self.pool.give_back_sorter(sorter);
@@ -173,7 +174,7 @@ impl<'a> BreadthFirst<'a> {
     /// Sorts the rays if they shall be: with their packets, and how long it took.
     fn sorted(&self, rays: &RayBatch) -> Option<(RaySorter, Decomposition, Duration)> {
         let hash = self.sort.filter(|_| !rays.is_empty() && rays.origin().is_none())?;
-        let begin = Instant::now();
+        let begin = Clock::now();
         let mut sorter = self.pool.sorter().unwrap_or_else(|| RaySorter::new(self.level, hash));
         sorter.order(rays);
         sorter.gather(rays);

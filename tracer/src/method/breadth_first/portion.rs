@@ -8,15 +8,15 @@ use super::queue::Queues;
 use super::runs::Runs;
 use super::{BreadthFirst, Stages, Visit};
 use crate::Error;
+use crate::clock::Clock;
 use crate::geometry::RayBlock;
 use crate::lanes;
-use crate::method::packet::found::Query;
+use crate::method::query::Query;
 use crate::method::{Context, packet};
 use crate::sort::RaySorter;
 use crate::stats::{Counters, NoCount};
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};
-use std::time::Instant;
 
 /// Blocks of rays in a portion, a few more or less.
 const BLOCKS: usize = 1024;
@@ -52,9 +52,12 @@ impl Pool {
         self.sorters.lock().unwrap_or_else(PoisonError::into_inner).push(sorter);
     }
 
-    /// Bytes of the queues, used or not.
+    /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
-        self.free.lock().unwrap_or_else(PoisonError::into_inner).iter().map(|scratch| scratch.queues.bytes()).sum()
+        let scratch = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        let sorters = self.sorters.lock().unwrap_or_else(PoisonError::into_inner);
+        let portions = scratch.iter().map(|s| s.frusta.bytes() + s.queues.bytes() + s.leaves.bytes());
+        portions.chain(sorters.iter().map(RaySorter::bytes)).sum()
     }
 }
 
@@ -131,38 +134,69 @@ impl BreadthFirst<'_> {
             results.fill(Q::NOTHING);
             return (Stages::default(), Counters::default());
         }
-        let mut counters = Counters::default();
-        let begin = Instant::now();
+        let (mut counters, mut visited) = (Counters::default(), crate::stats::Frusta::default());
+        let (mut stages, mut clock) = (Stages::default(), Clock::now());
         lanes::run_long(level, self.width, Build { rays, runs, space, frusta });
-        let built = Instant::now();
-        let counted = if count { Some(&mut counters.frusta) } else { None };
+        stages.frusta = clock.lap();
+        let (frusta, width) = (&*frusta, self.width.lanes(level));
+        let mut begin = 0;
+        // The packets all of whose frusta are through.
+        let mut intersect = |leaves: &mut Leaves, done: usize| {
+            stages.traversal += clock.lap();
+            let end = frusta.ends.partition_point(|&end| end as usize <= done);
+            if end > begin {
+                let (which, leaves_of, results) = (begin..end, &*leaves, &mut *results);
+                if count {
+                    let count = Counters::default();
+                    let job = Intersect::<Q, _> {
+                        bvh,
+                        tree,
+                        space,
+                        rays,
+                        results,
+                        runs,
+                        which,
+                        frusta,
+                        leaves: leaves_of,
+                        count,
+                    };
+                    // The work is the same at every level.
+                    counters = counters + lanes::run_once(width, job);
+                } else {
+                    let count = NoCount;
+                    let job = Intersect::<Q, _> {
+                        bvh,
+                        tree,
+                        space,
+                        rays,
+                        results,
+                        runs,
+                        which,
+                        frusta,
+                        leaves: leaves_of,
+                        count,
+                    };
+                    lanes::run_plain_if_emulated(level, width, job);
+                }
+                counters.frusta.leaves += leaves.forget(frusta.ends[end - 1] as usize) as u64;
+                begin = end;
+            }
+            stages.intersection += clock.lap();
+        };
+        let counted = if count { Some(&mut visited) } else { None };
         match self.visit {
-            Visit::BreadthFirst => queues.traverse(level, tree, &frusta.all, leaves, counted),
-            Visit::DepthFirst => depth_first::traverse(level, tree, &frusta.all, leaves, counted),
+            Visit::BreadthFirst => queues.traverse(level, tree, &frusta.all, leaves, counted, &mut intersect),
+            Visit::DepthFirst => depth_first::traverse(level, tree, &frusta.all, leaves, counted, &mut intersect),
         }
-        let traversed = Instant::now();
-        let width = self.width.lanes(level);
+        intersect(leaves, frusta.all.len());
         if count {
-            counters.frusta.frusta = frusta.all.len() as u64;
-            counters.frusta.leaves = leaves.nodes.len() as u64;
-            let (frusta, leaves, count) = (&*frusta, &*leaves, Counters::default());
-            // The work is the same at every level.
-            let job = Intersect::<Q, _> { bvh, tree, space, rays, results, runs, frusta, leaves, count };
-            counters = counters + lanes::run_once(width, job);
-        } else {
-            let (frusta, leaves, count) = (&*frusta, &*leaves, NoCount);
-            let job = Intersect::<Q, _> { bvh, tree, space, rays, results, runs, frusta, leaves, count };
-            lanes::run_plain_if_emulated(level, width, job);
+            visited.frusta = frusta.all.len() as u64;
+            counters.frusta = counters.frusta + visited;
         }
         for &(block, odd) in &frusta.odd {
             self.odd::<Q>(&rays[block as usize], odd, &mut results[block as usize]);
         }
-        let stages = Stages {
-            frusta: built - begin,
-            traversal: traversed - built,
-            intersection: traversed.elapsed(),
-            ..Stages::default()
-        };
+        stages.intersection += clock.elapsed();
         (stages, counters)
     }
 
@@ -172,7 +206,7 @@ impl BreadthFirst<'_> {
         for lane in (0..16).filter(|lane| odd >> lane & 1 != 0) {
             let hit = packet::closest(self.bvh, &rays.get(lane));
             if !hit.is_miss() {
-                Q::put(result, lane, &hit);
+                Q::store(result, lane, &hit);
             }
         }
     }

@@ -81,7 +81,8 @@ impl Queues {
         columns.iter().chain(&others).map(|column| column.len() * size_of::<u32>()).sum()
     }
 
-    /// Takes all frusta from the root to the leaves.
+    /// Takes all frusta from the root to the leaves. Where these have become more than pairs may be, `full` is told how many frusta are through with
+    /// them, and may forget their leaves.
     pub(super) fn traverse(
         &mut self,
         level: Level,
@@ -89,7 +90,9 @@ impl Queues {
         frusta: &[Frustum],
         leaves: &mut Leaves,
         mut count: Option<&mut stats::Frusta>,
+        full: &mut dyn FnMut(&mut Leaves, usize),
     ) {
+        self.waiting.clear();
         leaves.clear(frusta.len());
         for first in (0..frusta.len()).step_by(self.capacity) {
             self.input.len = self.capacity.min(frusta.len() - first);
@@ -100,9 +103,17 @@ impl Queues {
                 }
                 (*frustum, *node) = ((first + i) as u32, children::root(tree));
             }
+            if leaves.nodes.len() > self.capacity {
+                full(leaves, first);
+            }
             loop {
                 self.descend(level, tree, frusta, &mut count);
                 leaves.append(level, &self.input.frusta[..self.input.len], &self.input.nodes[..self.input.len]);
+                if leaves.nodes.len() > self.capacity
+                    && let Some([frusta, _]) = self.waiting.last()
+                {
+                    full(leaves, frusta[0] as usize);
+                }
                 let Some([frusta, nodes]) = self.waiting.pop() else { break };
                 self.input.len = nodes.len();
                 self.input.reserve(nodes.len());

@@ -6,6 +6,9 @@ use simd::{Float, Mask, Simd, Vector};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Moves the rays among the first `len` that meet the box to the front, and returns their number.
+///
+/// A ray is a row of 32 bytes: one exchange moves it. To compress columns of a vector of rays into memory instead (AVX-512) takes a store for each of eight
+/// columns, and each row twice through a transpose.
 pub(super) struct Filter<'a, A> {
     pub(super) rays: &'a mut A,
     pub(super) len: usize,

@@ -199,7 +199,7 @@ impl<'a> DivideConquer<'a> {
         let done = if threads == 1 {
             query.run(ids, all, rows, found)
         } else if self.sharing == Sharing::Naive || rows.len() > threads * all.len() {
-            tasks::naive(&query, ids, all, rows, found)
+            tasks::naive(&query, &self.rooms, ids, all, rows, found)
         } else {
             tasks::shared(&query, &self.rooms, ids, all, rows, found)
         };

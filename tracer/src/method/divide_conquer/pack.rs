@@ -6,17 +6,12 @@ use crate::geometry::{Triangle, Vec3};
 use crate::lanes::Lanes;
 use simd::{Block, Float, Mask, Vector};
 
-/// Triangles by their place.
-pub(super) enum Source<'a> {
-    /// Three vertices.
-    Vertices(&'a (dyn Fn(usize) -> [[f32; 3]; 3] + Sync)),
-    /// The first vertex and two edges.
-    Edges(&'a [Triangle]),
-}
+/// The vertices of triangles by their place.
+pub(super) type Vertices<'a> = &'a (dyn Fn(usize) -> [[f32; 3]; 3] + Sync);
 
 /// Packs the triangles from `first` on.
 pub(super) struct Pack<'a> {
-    pub(super) source: &'a Source<'a>,
+    pub(super) vertices: Vertices<'a>,
     pub(super) first: usize,
     /// One for each triangle.
     pub(super) boxes: &'a mut [Box8],
@@ -29,28 +24,21 @@ impl Lanes for Pack<'_> {
 
     #[inline(always)]
     fn run<F: Float>(self) {
-        let Self { source, first, boxes, complements } = self;
+        let Self { vertices, first, boxes, complements } = self;
         let mut at = 0;
         while at < boxes.len() {
             let n = F::LANES.min(boxes.len() - at);
-            // By vertex (or vertex and edges) and axis; those behind the last triangle are points.
+            // By vertex and axis; those behind the last triangle are points.
             let mut columns = [[Block([0.0; 16]); 3]; 3];
             for lane in 0..n {
-                let rows = match source {
-                    Source::Vertices(of) => of(first + at + lane),
-                    Source::Edges(triangles) => {
-                        let t = &triangles[first + at + lane];
-                        [t.v0, t.e1, t.e2]
-                    }
-                };
-                for (columns, row) in columns.iter_mut().zip(&rows) {
+                for (columns, row) in columns.iter_mut().zip(&vertices(first + at + lane)) {
                     for (column, x) in columns.iter_mut().zip(row) {
                         column.0[lane] = *x;
                     }
                 }
             }
-            let (v0, a, b) = (Vec3::<F>::load(&columns[0], 0), Vec3::load(&columns[1], 0), Vec3::load(&columns[2], 0));
-            let (e1, e2) = if matches!(source, Source::Vertices(_)) { (a - v0, b - v0) } else { (a, b) };
+            let v0 = Vec3::<F>::load(&columns[0], 0);
+            let (e1, e2) = (Vec3::load(&columns[1], 0) - v0, Vec3::load(&columns[2], 0) - v0);
             let (mut box_rows, mut rest) = ([[0.0; 8]; 16], [[0.0; 4]; 16]);
             let doubtful = pack::<F>([v0, e1, e2], &mut box_rows, &mut rest);
             let edges = [v0, e1, e2].map(|v| [v.x.to_block(), v.y.to_block(), v.z.to_block()]);

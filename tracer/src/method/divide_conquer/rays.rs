@@ -150,6 +150,9 @@ pub(super) fn load<'a, F: Float>(rows: &'a [Row], at: usize, n: usize, buffer: &
     buffer
 }
 
+/// How many rays ahead the memory of those that are looked at by their place is asked for, as the paper does.
+const AHEAD: usize = 32;
+
 /// Their places are (Mora 2011), which the paper compares with.
 pub(super) struct ByPlace<'a> {
     pub(super) places: &'a mut [u32],
@@ -163,6 +166,9 @@ impl Active for ByPlace<'_> {
     fn load<'a, F: Float>(&'a self, at: usize, n: usize, buffer: &'a mut [Row; 16]) -> &'a [Row] {
         if n < F::LANES {
             *buffer = BUFFER;
+        }
+        for &place in self.places.iter().skip(at + AHEAD).take(n) {
+            simd::prefetch(self.rows, place as usize);
         }
         for (to, place) in buffer.iter_mut().zip(&self.places[at..at + n]) {
             *to = self.rows[*place as usize];

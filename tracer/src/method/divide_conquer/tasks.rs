@@ -13,7 +13,14 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Each thread a part of the rays, and all triangles (section 4).
-pub(super) fn naive(query: &Query, ids: &[u32], all: Range, rows: &mut [Row], found: &mut [Hit]) -> Done {
+pub(super) fn naive(
+    query: &Query,
+    rooms: &Rooms,
+    ids: &[u32],
+    all: Range,
+    rows: &mut [Row],
+    found: &mut [Hit],
+) -> Done {
     let size = rows.len().div_ceil(rayon::current_num_threads()).next_multiple_of(16);
     let parts = rows.par_chunks_mut(size).zip(found.par_chunks_mut(size)).enumerate();
     let done = parts.map(|(i, (rows, found))| {
@@ -22,7 +29,11 @@ pub(super) fn naive(query: &Query, ids: &[u32], all: Range, rows: &mut [Row], fo
             set_id(row, id(row) - first);
         }
         let starts = if query.starts.is_empty() { &[] } else { &query.starts[first..] };
-        Query { starts, ..*query }.run(&mut ids.to_vec(), all, rows, found)
+        rooms.with(|room| {
+            room.ids.clear();
+            room.ids.extend_from_slice(ids);
+            Query { starts, ..*query }.run(&mut room.ids, all, rows, found)
+        })
     });
     done.reduce(Done::default, |a, b| a + b)
 }
@@ -40,14 +51,17 @@ pub(super) fn shared(
     let ends = rows.par_iter().map(|row| AtomicU32::new(row[T_MAX].to_bits())).collect();
     let size = found.len().div_ceil(STRIPES).max(1);
     let stripes = found.chunks_mut(size).map(Mutex::new).collect();
-    let most = all.len() / (TASKS * rayon::current_num_threads());
+    let tasks = TASKS * rayon::current_num_threads();
+    let (most, depth) = (all.len() / tasks, tasks.ilog2() + UNEVEN);
     let shared = Shared { query, ends, stripes, size, most, rooms };
     // Not filtered: most rays of a batch meet the box of all.
-    shared.halves(ids, &all, rows).unwrap_or_else(|| shared.task(ids, all, rows, false))
+    shared.halves(ids, &all, rows, depth).unwrap_or_else(|| shared.task(ids, all, rows, false, 0))
 }
 
 /// Tasks for each thread, if they were of one size.
 const TASKS: usize = 8;
+/// So many times more than it would take halves of one size, triangles are divided into tasks: each time rays are copied, and the copies wait.
+const UNEVEN: u32 = 4;
 /// Fewer rays are not worth a task of their own.
 const FEW_RAYS: usize = 1 << 13;
 /// Parts of the hits that are locked one by one.
@@ -69,12 +83,19 @@ struct Shared<'a> {
 }
 
 impl Shared<'_> {
-    /// Some triangles, whose ids these are, and rays that may meet them and may have become shorter.
-    fn task(&self, ids: &mut [u32], range: Range, rays: &[Row], shorter: bool) -> Done {
-        self.rooms.with(|room| self.task_in(room, ids, range, rays, shorter))
+    /// Some triangles, whose ids these are, and rays that may meet them and may have become shorter; `depth` times at most they are divided into tasks.
+    fn task(&self, ids: &mut [u32], range: Range, rays: &[Row], shorter: bool, depth: u32) -> Done {
+        self.rooms.with(|room| self.task_in(room, ids, range, (rays, shorter), depth))
     }
 
-    fn task_in(&self, room: &mut Room, ids: &mut [u32], range: Range, rays: &[Row], shorter: bool) -> Done {
+    fn task_in(
+        &self,
+        room: &mut Room,
+        ids: &mut [u32],
+        range: Range,
+        (rays, shorter): (&[Row], bool),
+        depth: u32,
+    ) -> Done {
         let Query { level, width: lanes, from, .. } = *self.query;
         let (ends, planes) = (if shorter { &*self.ends } else { &[] }, range.planes());
         // Most rays may miss: room is taken as it is needed.
@@ -93,7 +114,8 @@ impl Shared<'_> {
         }
         if range.len() > self.most
             && active >= FEW_RAYS
-            && let Some(of_halves) = self.halves(ids, &range, &room.rows[..active])
+            && depth > 0
+            && let Some(of_halves) = self.halves(ids, &range, &room.rows[..active], depth)
         {
             return done + of_halves;
         }
@@ -101,7 +123,7 @@ impl Shared<'_> {
     }
 
     /// Divides the triangles, if they can be, and traces both halves.
-    fn halves(&self, ids: &mut [u32], range: &Range, rows: &[Row]) -> Option<Done> {
+    fn halves(&self, ids: &mut [u32], range: &Range, rows: &[Row], depth: u32) -> Option<Done> {
         let Query { triangles, level, .. } = *self.query;
         let sides @ [left, _] = divide(level, ids, &triangles.boxes, range, self.query.way(range.len(), rows.len()))?;
         let [near, far] = in_order(sides, &rows[0]);
@@ -109,8 +131,8 @@ impl Shared<'_> {
         let is_left_near = near.first == left.first;
         let (of_near, of_far) = if is_left_near { (of_left, of_right) } else { (of_right, of_left) };
         let (a, b) = rayon::join(
-            || self.task(of_near, near.alone(), rows, false),
-            || self.task(of_far, far.alone(), rows, true),
+            || self.task(of_near, near.alone(), rows, false, depth - 1),
+            || self.task(of_far, far.alone(), rows, true, depth - 1),
         );
         Some(a + b)
     }

@@ -148,4 +148,21 @@ fn an_empty_batch_and_what_cannot_be_hit() {
 #[test]
 fn bytes_as_in_the_paper() {
     assert_eq!(DivideConquer::bytes(1000, 100, 4), 32 * 1000 + (48 + 4 * 4) * 100);
+    let mut random = Random(8);
+    let mesh = soup(&mut random, 5000, 0.1);
+    let triangles = TriangleBoxes::new(&mesh).expect("a valid mesh");
+    let rays: RayBatch = (0..20_000).map(|_| crate::geometry::Ray::new(random.point(1.0), random.point(1.0))).collect();
+    for threads in [1, 3] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        let method = DivideConquer::new(&triangles, Level::best(), Width::Auto).with_sharing(Sharing::Naive);
+        for _ in 0..2 {
+            pool.install(|| method.closest(&rays, &mut HitBatch::new(), &mut Context::default()))
+                .expect("not cancelled");
+        }
+        // Hits (16 bytes) are left out in the paper; the ids of all triangles are held beside those of each thread.
+        let (r, t) = (rays.len(), mesh.triangles.len());
+        let most = DivideConquer::bytes(r, t, threads) + 16 * r + 2 * size_of::<u32>() * t;
+        let held = triangles.memory() + method.memory();
+        assert!(held <= most && held > most / 2, "{threads} threads: {held} bytes of {most}");
+    }
 }

@@ -6,13 +6,14 @@ use super::partition::{Range, Way, divide};
 use super::rays::{Active, ByPlace, InPlace, Row};
 use super::triangles::TriangleBoxes;
 use super::{DivideLimits, Filtering, Phases};
+use crate::clock::Clock;
 use crate::geometry::{Hit, Triangle};
 use crate::lanes::{self, Width};
 use crate::stats::Counters;
 use simd::Level;
 use std::ops::Add;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::Duration;
 
 /// What is the same for all steps.
 #[derive(Clone, Copy)]
@@ -163,11 +164,11 @@ impl Traversal<'_> {
         if A::ANY_WIDTH { self.query.width } else { self.query.level.isa().lanes() }
     }
 
-    fn start(&self) -> Option<Instant> {
-        if self.query.clock { Some(Instant::now()) } else { None }
+    fn start(&self) -> Option<Clock> {
+        if self.query.clock { Some(Clock::now()) } else { None }
     }
 
-    fn stop(&mut self, start: Option<Instant>, add: impl FnOnce(&mut Phases, std::time::Duration)) {
+    fn stop(&mut self, start: Option<Clock>, add: impl FnOnce(&mut Phases, Duration)) {
         if let Some(start) = start {
             add(&mut self.done.phases, start.elapsed());
         }

@@ -1,6 +1,6 @@
 //! Triangles as boxes and what boxes leave out (section 3.3): 48 bytes each, from which [`Triangle`]s come back bit for bit.
 
-use super::pack::{Pack, Source};
+use super::pack::{Pack, Vertices};
 use super::partition::Range;
 use crate::Error;
 use crate::bvh::build::primitive::{Box8, centers_of};
@@ -52,28 +52,16 @@ impl TriangleBoxes {
     /// [`Error::Geometry`] as [`Mesh::validate`].
     pub fn new(mesh: &Mesh) -> Result<Self, Error> {
         mesh.validate()?;
-        Ok(Self::pack(mesh.triangles.len(), &Source::Vertices(&|i| mesh.triangle(i))))
+        Ok(Self::pack(mesh.triangles.len(), &|i| mesh.triangle(i)))
     }
 
-    /// Of triangles in any order, by their ids; degenerate ones are passed over.
-    #[must_use]
-    pub fn of_triangles(triangles: &[Triangle]) -> Self {
-        let n = triangles.iter().map(|t| t.id as usize + 1).max().unwrap_or(0);
-        let nothing = Triangle::new([[0.0; 3]; 3], 0, 0);
-        let mut in_order = vec![nothing; n];
-        for triangle in triangles {
-            in_order[triangle.id as usize] = *triangle;
-        }
-        Self::pack(n, &Source::Edges(&in_order))
-    }
-
-    fn pack(n: usize, source: &Source<'_>) -> Self {
+    fn pack(n: usize, vertices: Vertices<'_>) -> Self {
         let (mut boxes, mut complements) = (simd::vec_in_huge_pages(n), simd::vec_in_huge_pages(n));
         boxes.resize(n, NOTHING.0);
         complements.resize(n, NOTHING.1);
         let portions = boxes.par_chunks_mut(PORTION).zip(complements.par_chunks_mut(PORTION)).enumerate();
         portions.for_each(|(i, (boxes, complements))| {
-            let job = Pack { source, first: PORTION * i, boxes, complements };
+            let job = Pack { vertices, first: PORTION * i, boxes, complements };
             lanes::run_long(Level::best(), Width::Auto, job);
         });
         Self::of_packed(boxes, complements)
@@ -145,21 +133,18 @@ mod tests {
         [t.v0, t.e1, t.e2].map(|v| v.map(f32::to_bits))
     }
 
-    /// Packs triangles in two ways and at all levels, and takes them back; returns how many have an edge that is no difference.
+    /// Packs triangles at all levels, and takes them back; returns how many have an edge that is no difference.
     fn check(vertices: &[[[f32; 3]; 3]]) -> usize {
         let triangles: Vec<Triangle> = (0..).zip(vertices).map(|(id, v)| Triangle::new(*v, id, 0)).collect();
-        let packed = TriangleBoxes::pack(vertices.len(), &Source::Vertices(&|i| vertices[i]));
-        let again = TriangleBoxes::of_triangles(&triangles);
+        let packed = TriangleBoxes::pack(vertices.len(), &|i| vertices[i]);
         for level in Level::available() {
             let (mut boxes, mut complements) = (vec![NOTHING.0; vertices.len()], vec![NOTHING.1; vertices.len()]);
-            let source = &Source::Edges(&triangles);
-            let job = Pack { source, first: 0, boxes: &mut boxes, complements: &mut complements };
+            let job = Pack { vertices: &|i| vertices[i], first: 0, boxes: &mut boxes, complements: &mut complements };
             lanes::run_long(level, Width::Auto, job);
-            for other in [(&packed.boxes, &packed.complements), (&again.boxes, &again.complements)] {
-                let same = boxes.iter().zip(other.0).all(|(a, b)| a.0.map(f32::to_bits) == b.0.map(f32::to_bits));
-                let codes = complements.iter().zip(other.1).all(|(a, b)| a.code == b.code && a.middle == b.middle);
-                assert!(same && codes, "{level}");
-            }
+            let same = boxes.iter().zip(&packed.boxes).all(|(a, b)| a.0.map(f32::to_bits) == b.0.map(f32::to_bits));
+            let codes =
+                complements.iter().zip(&packed.complements).all(|(a, b)| a.code == b.code && a.middle == b.middle);
+            assert!(same && codes, "{level}");
         }
         let mut corrected = 0;
         for (id, triangle) in (0..).zip(&triangles) {

@@ -1,8 +1,9 @@
 //! Packets of rays through the skip-pointer tree: Geimer & Müller 2003, section 3.3.
 
-pub(super) mod found;
 mod ordered;
 
+use super::found::Found;
+use super::query::{Any, Closest, Query};
 use super::{BitVec, Context, Method, PORTION, in_portions};
 use crate::Error;
 use crate::bvh::Bvh;
@@ -11,7 +12,6 @@ use crate::geometry::slab::{self, Near, Origin, PerRay, Shared};
 use crate::geometry::{Hit, HitBatch, HitBlock, Packet as Rays, Ray, RayBatch, RayBlock};
 use crate::lanes::{self, Lanes, Width};
 use crate::stats::{Count, Counters, NoCount};
-use found::{Any, Closest, Found, Query};
 use simd::{Float, Isa, Level, Mask};
 
 /// How a packet's box test becomes one answer. Both find the same hits.

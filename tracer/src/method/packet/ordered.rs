@@ -1,10 +1,10 @@
 //! The same array of nodes, near child first: the first child is the next node, its skip pointer leads to the second.
 
-use super::found::Found;
 use super::leaf;
 use crate::bvh::Bvh;
 use crate::geometry::Packet as Rays;
 use crate::geometry::slab::{self, Near, Origin};
+use crate::method::found::Found;
 use crate::stats::Count;
 use simd::{Float, Mask};
 

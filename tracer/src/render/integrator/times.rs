@@ -1,8 +1,9 @@
 //! What a picture took.
 
+use crate::clock::Clock;
 use crate::geometry::RayBatch;
 use crate::method::Context;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Where the time went, and how many rays there were.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -47,7 +48,7 @@ impl Times {
 
 /// Does something and adds the time.
 pub(super) fn timed<T>(sum: &mut Duration, work: impl FnOnce() -> T) -> T {
-    let start = Instant::now();
+    let start = Clock::now();
     let result = work();
     *sum += start.elapsed();
     result

@@ -6,12 +6,12 @@ use super::shade::{Portion, Rules, Scratch, Shaded, Wave};
 use super::times::timed;
 use super::{After, Config, Film, Integrator, Means, Query, Rendering, Times, ao, camera, shade};
 use crate::Error;
+use crate::clock::Clock;
 use crate::geometry::{HitBatch, RayBatch};
 use crate::method::BitVec;
 use crate::model::Camera;
 use crate::render::{Sampler, Scenery};
 use rayon::prelude::*;
-use std::time::Instant;
 
 pub(super) fn render(
     scenery: &Scenery,
@@ -25,7 +25,7 @@ pub(super) fn render(
     means.progress.stage("render", film.pixels() * u64::from(config.samples));
     means.progress.resume(film.done);
     let mut waves = Waves { scenery, camera, config, means, times: Times::default(), memory: Memory::default() };
-    let start = Instant::now();
+    let start = Clock::now();
     let in_time = || config.time_limit.is_none_or(|limit| start.elapsed() < limit);
     while film.ahead() > 0 || film.samples() < config.samples && (film.samples() == 0 || in_time()) {
         let sample = film.samples();
