@@ -32,7 +32,7 @@ use variants::Variants;
 /// Incoherent Ray Tracing without Acceleration Structures (Áfra 2012): table 1, time with building, phases, memory, variants
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Writes afra.md, afra.json and afra_figure_SCENE.svg, and prints the first. The conference room is looked for in the folder that TRACER_SCENES \
+Writes afra.md, afra.json and afra_figure_SCENE.svg, and prints the first. The conference room, conference.obj.zst, is looked for in the folder that TRACER_SCENES \
 names, else in ../shared/scenes; if it is missing it is left out.
 
 Examples:

@@ -24,8 +24,8 @@ use tracer::progress::Progress;
 /// Adaptive Ray Packet Reordering (Boulos, Wald and Benthin 2008): tables 1 to 4, figures 6 to 8
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Writes boulos.md, boulos.json and boulos_figure6.svg to boulos_figure8.svg, and prints the first. Scenes are looked for in the folder that \
-TRACER_SCENES names, else in ../shared/scenes; what is missing is left out. Table 4 and the figures are of the conference room.
+Writes boulos.md, boulos.json and boulos_figure6.svg to boulos_figure8.svg, and prints the first. conference.obj.zst and crytek_sponza.obj.zst are \
+looked for in the folder that TRACER_SCENES names, else in ../shared/scenes; what is missing is left out. Table 4 and the figures are of the conference room.
 
 Examples:
   bench boulos --quick                              does it run?

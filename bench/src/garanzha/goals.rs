@@ -38,8 +38,8 @@ pub fn all(report: &Report) -> Vec<Goal> {
             values: sorting
                 .sorts
                 .iter()
-                .filter(|sort| sort.keys.contains(" 16 shadow"))
-                .map(|sort| (sort.keys.clone(), Some(sort.radix / sort.compressed)))
+                .filter(|sort| sort.keys != "random")
+                .map(|sort| (format!("{}: {} keys", sort.keys, sort.number), Some(sort.radix / sort.compressed)))
                 .collect(),
         },
         Goal {
@@ -48,9 +48,9 @@ pub fn all(report: &Report) -> Vec<Goal> {
             values: sorting
                 .reorders
                 .iter()
-                .filter(|times| times.method == "wide" && times.rays.ends_with("in 1"))
+                .filter(|times| times.method == "wide")
                 .map(|times| {
-                    let of = format!("{}, {}, cell {:.4}", times.scene, times.by, times.cell);
+                    let of = format!("{}, {} rays, {}, cell {:.4}", times.scene, times.rays, times.by, times.cell);
                     (of, Some(times.unsorted / times.charged()))
                 })
                 .collect(),

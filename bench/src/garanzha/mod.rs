@@ -6,6 +6,7 @@ mod goals;
 mod paper;
 mod race;
 mod scenes;
+mod strata;
 mod text;
 
 use crate::console::Console;
@@ -28,8 +29,8 @@ use tracer::stats::Frusta;
 /// Fast Ray Sorting and Breadth-First Packet Traversal (Garanzha and Loop 2010): the sort stage, table 1, figures 12 to 15
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Writes garanzha.md, garanzha.json and garanzha_figure12_SCENE.svg, and prints the first. Scenes are looked for in the folder that TRACER_SCENES \
-names, else in ../shared/scenes; what is missing is left out.
+Writes garanzha.md, garanzha.json and garanzha_figure12_SCENE.svg, and prints the first. conference.obj.zst and crytek_sponza.obj.zst are looked for in \
+the folder that TRACER_SCENES names, else in ../shared/scenes; what is missing is left out. At the CPU's best level, whatever SIMD_LEVEL says.
 
 Examples:
   bench garanzha --quick                       does it run?
@@ -152,12 +153,12 @@ fn part(scene: &Scene, [width, height]: [usize; 2], repeat: usize, console: &Con
     let mut cx = Context { counters: None, cancel: Some(console.cancel()) };
     console.stage(&format!("{}: eye rays", scene.name), 0);
     let (eye_rays, hits) = scene.eye([width, height], &mut cx)?;
-    let eye = race_all(scene, Query::Closest, std::slice::from_ref(&eye_rays), repeat, &mut cx)?;
+    let eye = race_all(scene, Query::Closest, 1, std::slice::from_ref(&eye_rays), repeat, &mut cx)?;
 
     console.stage(&format!("{}: soft shadows", scene.name), 0);
     let points = Scene::points(&eye_rays, &hits);
     let rays = batches(scene, &points, SAMPLES, 1.0);
-    let shadows = race_all(scene, Query::Any, &rays, repeat, &mut cx)?;
+    let shadows = race_all(scene, Query::Any, SAMPLES, &rays, repeat, &mut cx)?;
     console.stage(&format!("{}: table 1", scene.name), 0);
     let table = table(scene, &rays, &mut cx)?;
     let shadow_rays = rays.iter().map(RayBatch::len).sum();
@@ -168,7 +169,7 @@ fn part(scene: &Scene, [width, height]: [usize; 2], repeat: usize, console: &Con
     let few: Vec<[f32; 3]> = points.chunks(16).step_by(4).flatten().copied().collect();
     let mut sweep = |samples, scale: f32, of| {
         let rays = batches(scene, &few, samples, scale);
-        let found = race_all(scene, Query::Any, &rays, repeat.min(2), &mut cx)?;
+        let found = race_all(scene, Query::Any, samples, &rays, repeat.min(2), &mut cx)?;
         Ok(Sweep { of, rays: rays.iter().map(RayBatch::len).sum(), found })
     };
     let lamps = LAMPS.into_iter().map(|scale| sweep(SAMPLES, scale, scale)).collect::<Result<_, Error>>()?;
@@ -182,16 +183,20 @@ fn batches(scene: &Scene, points: &[[f32; 3]], samples: usize, scale: f32) -> Ve
     points.chunks((BATCH / samples).max(1)).map(|points| scene.shadows(points, samples, scale)).collect()
 }
 
-/// Frusta in their variants and what they are compared with.
+/// Frusta in their variants and what they are compared with, for so many rays from each point.
 fn race_all(
     scene: &Scene,
     query: Query,
+    samples: usize,
     rays: &[RayBatch],
     repeat: usize,
     cx: &mut Context<'_>,
 ) -> Result<Vec<Found>, Error> {
     let by = if query == Query::Any { Reorder::Origin } else { Reorder::Hash };
     let mut racers = race::frusta(scene);
+    if query == Query::Any {
+        racers.extend(race::strata(scene, samples));
+    }
     racers.extend(race::rivals(scene, RayHash::new(&scene.bounds, by)));
     race::race(&mut racers, query, rays, repeat, cx)?;
     Ok(racers.iter().map(Racer::found).collect())

@@ -1,6 +1,7 @@
 //! Ways to find out which points are in shadow, on the same rays in turn.
 
 use super::scenes::Scene;
+use super::strata::Strata;
 use crate::report::clock::{median, timed};
 use serde::Serialize;
 use simd::Level;
@@ -24,10 +25,12 @@ pub enum Query {
 pub enum Way<'a> {
     /// A method as it is.
     Plain(Box<dyn Method + 'a>),
-    /// A method whose rays are sorted before.
-    Sorted(Box<dyn Method + 'a>, RayHash),
+    /// A method whose rays are sorted before; the sorter keeps its memory from batch to batch, as frusta do.
+    Sorted(Box<dyn Method + 'a>, Box<RaySorter>),
     /// By frusta, with times of the stages.
     Frusta(BreadthFirst<'a>),
+    /// The same, rays to each part of the lamp by themselves.
+    Strata(BreadthFirst<'a>, Strata),
 }
 
 /// What it took, in seconds.
@@ -111,18 +114,16 @@ impl<'a> Racer<'a> {
     }
 
     /// Asks; the answer as a hash.
-    fn ask(&self, query: Query, rays: &RayBatch, cx: &mut Context<'_>) -> Result<(Times, u64), Error> {
+    fn ask(&mut self, query: Query, rays: &RayBatch, cx: &mut Context<'_>) -> Result<(Times, u64), Error> {
         let (mut hits, mut bits) = (HitBatch::new(), BitVec::new());
-        let times = match &self.way {
+        let times = match &mut self.way {
             Way::Plain(method) => {
                 Times { intersection: find(&**method, query, rays, &mut hits, &mut bits, cx)?, ..Times::default() }
             }
-            Way::Sorted(method, hash) => {
-                let (mut sorter, before) = timed(|| {
-                    let mut sorter = RaySorter::new(Level::best(), *hash);
+            Way::Sorted(method, sorter) => {
+                let ((), before) = timed(|| {
                     sorter.order(rays);
                     sorter.gather(rays);
-                    sorter
                 });
                 let (mut sorted_hits, mut sorted_bits) = (HitBatch::new(), BitVec::new());
                 let intersection = find(&**method, query, sorter.rays(), &mut sorted_hits, &mut sorted_bits, cx)?;
@@ -139,15 +140,27 @@ impl<'a> Racer<'a> {
                 });
                 Times::of(stages?, seconds)
             }
+            Way::Strata(method, strata) => {
+                let mut times = Times::default();
+                let words = strata.each(rays, |rays, bits| {
+                    let (stages, seconds) = timed(|| method.any_in_stages(rays, bits, cx));
+                    times.add(&Times::of(stages?, seconds));
+                    Ok(())
+                })?;
+                return Ok((times, hash_of(rays.len(), &words)));
+            }
         };
         let hash = match query {
             Query::Closest => hits.hash(),
-            Query::Any => {
-                bits.words().iter().fold(bits.len() as u64, |h, &w| h.wrapping_mul(0x100_0000_01b3) ^ u64::from(w))
-            }
+            Query::Any => hash_of(bits.len(), bits.words()),
         };
         Ok((times, hash))
     }
+}
+
+/// Of the bits of a number of rays.
+fn hash_of(len: usize, words: &[u16]) -> u64 {
+    words.iter().fold(len as u64, |hash, &word| hash.wrapping_mul(0x100_0000_01b3) ^ u64::from(word))
 }
 
 /// The seconds that a method takes.
@@ -172,7 +185,7 @@ pub fn rivals<'a>(scene: &'a Scene, hash: RayHash) -> Vec<Racer<'a>> {
     let wide = || Box::new(Single::new(&scene.wide, level));
     vec![
         Racer::new("wide", Way::Plain(wide())),
-        Racer::new("wide, sorted", Way::Sorted(wide(), hash)),
+        Racer::new("wide, sorted", Way::Sorted(wide(), Box::new(RaySorter::new(level, hash)))),
         Racer::new("auto", Way::Plain(Box::new(Auto::new(&scene.wide, level)))),
         Racer::new("packet", Way::Plain(Box::new(Packet::new(&scene.bvh, level, Width::Auto)))),
     ]
@@ -187,6 +200,16 @@ pub fn frusta(scene: &Scene) -> Vec<Racer<'_>> {
         Racer::new("frusta, two children a node", of(&scene.halves, Visit::BreadthFirst)),
         Racer::new("frusta, depth first", of(&scene.octo, Visit::DepthFirst)),
     ]
+}
+
+/// Frusta for each of 4 and of 16 parts of the lamp, for so many shadow rays a point.
+pub fn strata(scene: &Scene, samples: usize) -> Vec<Racer<'_>> {
+    let hash = RayHash::new(&scene.bounds, Reorder::Origin);
+    let of = |parts| {
+        let method = Racer::frusta(scene, &scene.octo, hash, 256, Visit::BreadthFirst);
+        Racer::new(&format!("frusta, lamp in {parts}"), Way::Strata(method, Strata::new(samples, parts)))
+    };
+    vec![of(4), of(16)]
 }
 
 /// Times all on each batch in turn, another one first in each round; all must find the same.

@@ -101,11 +101,9 @@ impl Scene {
 
     /// Eye rays along a Z-curve, and what they hit.
     pub fn eye(&self, [width, height]: [usize; 2], cx: &mut Context<'_>) -> Result<(RayBatch, HitBatch), Error> {
-        let level = simd::Level::best();
-        let eye = EyeRays::new(&self.camera, width, height, level, Width::Auto);
-        let rays: RayBatch = z_order(width, height).into_iter().map(|pixel| eye.rays().get(pixel as usize)).collect();
+        let rays = eye_rays(&self.camera, [width, height]);
         let mut hits = HitBatch::new();
-        Auto::new(&self.wide, level).closest(&rays, &mut hits, cx)?;
+        Auto::new(&self.wide, simd::Level::best()).closest(&rays, &mut hits, cx)?;
         Ok((rays, hits))
     }
 
@@ -135,5 +133,28 @@ impl Scene {
             }
         }
         rays
+    }
+}
+
+/// Eye rays along a Z-curve.
+fn eye_rays(camera: &Camera, [width, height]: [usize; 2]) -> RayBatch {
+    let rows = EyeRays::new(camera, width, height, simd::Level::best(), Width::Auto).by_rows();
+    z_order(width, height).into_iter().map(|pixel| rows.get(pixel as usize)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sixteen_eye_rays_are_four_by_four_pixels() {
+        let camera = Camera { eye: [0.0; 3], at: [0.0, 0.0, 1.0], up: [0.0, 1.0, 0.0], fov: 90.0 };
+        let rays: Vec<Ray> = eye_rays(&camera, [64, 48]).iter().collect();
+        assert_eq!(rays.len(), 64 * 48);
+        let apart = |a: &Ray, b: &Ray| (0..3).map(|i| (a.dir[i] - b.dir[i]).powi(2)).sum::<f32>().sqrt();
+        let pixel = apart(&rays[0], &rays[1]);
+        for block in rays.chunks(16) {
+            assert!(block.iter().all(|ray| apart(&block[0], ray) < 4.5 * pixel));
+        }
     }
 }

@@ -13,8 +13,8 @@ pub fn markdown(report: &Report) -> String {
     text += &sort::tables(&report.sorting);
     if !report.parts.is_empty() {
         text += &format!(
-            "\n## Table 1: {SAMPLES} shadow rays from each point, by the size of cells and packets\n\nThousands of leaves captured / thousands of frusta / rays in a group of \
-             {} (the paper: 32); million rays per second. In brackets the paper's.\n",
+            "\n## Table 1: {SAMPLES} shadow rays from each point, by the size of cells and packets\n\nLeaves captured / frusta, both for each ray / rays in a group of \
+             {} (the paper: 32; here the rays of a point fill a group); million rays per second. In brackets the paper's, with all pixels of 1024x768 counted.\n",
             simd::Level::best().isa().lanes()
         );
         for part in &report.parts {
@@ -65,7 +65,7 @@ fn head(report: &Report) -> String {
          - measured: CPU time; all ways are given the same batches, one after the other on each batch, another one first in each round; medians of {repeat} rounds (of one in table 1, of two at most in \
          figure 15). Stages are parts of the time on the wall\n\
          - frusta: packets of at most 256 rays of one cell of 0.004 of the diagonal, sorted by origin (eye rays: not sorted, along a Z-curve), the tree by the surface area heuristic with at \
-         most {} triangles a leaf, 8 children a node\n\
+         most {} triangles a leaf, 8 children a node; `lamp in 4`, `in 16`: rays to each part of the lamp by themselves, made in that order\n\
          - `wide`: single rays through a tree of 8 children a node; `auto`: as many rays together as agree, through the same; `packet`: the packets of the paper of 2003\n\
          - paper: a GPU (GTX 285), its scenes, cameras and lamps differ from these\n",
         report.machine,
@@ -88,11 +88,13 @@ fn table_1(part: &Part) -> String {
     let rows = part.table.iter().zip(paper::PACKETS).zip(&paper::TABLE_1).map(|((row, packet), printed)| {
         let cells = row.iter().zip(printed).map(|(cell, printed)| {
             let [leaves, frusta, rays] = printed[part.name as usize];
-            let thousands = |n: u64| n as f64 / 1000.0;
+            // In the paper's picture, 1024 x 768, all points that are seen have shadow rays.
+            let [leaves, frusta] = [leaves, frusta].map(|thousands| 1000.0 * thousands / (1024.0 * 768.0 * 16.0));
+            let per_ray = |n: u64| n as f64 / part.shadow_rays as f64;
             format!(
-                "{:.0} / {:.0} / {:.1}; {:.2} ({leaves} / {frusta} / {rays})",
-                thousands(cell.leaves),
-                thousands(cell.frusta),
+                "{:.3} / {:.4} / {:.1}; {:.2} ({leaves:.3} / {frusta:.4} / {rays})",
+                per_ray(cell.leaves),
+                per_ray(cell.frusta),
                 cell.rays_per_group,
                 cell.mrays
             )

@@ -7,6 +7,7 @@ pub mod scene;
 
 use crate::console::Console;
 use crate::machine::Machine;
+use crate::report::clock::median;
 use keys::{Keys, ScanTimes, SortTimes};
 use reorder::ReorderTimes;
 use scene::Scene;
@@ -18,7 +19,7 @@ use tracer::Error;
 /// Sorting rays (Garanzha and Loop 2010, sections 3.1 and 5.2): scans, radix sort, compression, reordering before a method
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-On one thread, CPU time, medians of rounds in which all take turns.
+On one thread at the CPU's best level, whatever SIMD_LEVEL says; CPU time, medians of rounds in which all take turns.
 
 Examples:
   bench sort --quick                                does it run?
@@ -142,7 +143,7 @@ pub fn tables(found: &Sorting) -> String {
         );
     }
     text += "\n## Reordering before a method: diffuse rays after two reflections\n\n\
-             Charged: hash, sort, gathering rays and putting hits back are part of the time. Left out: by direction before origin, which made `wide` slower (0.71 to 0.86 times as fast).\n\n\
+             Charged: hash, sort, gathering rays and putting hits back are part of the time.\n\n\
              | scene | rays | method | by | cell | a run | order | gather | trace | back | unsorted | sort charged | not charged |\n\
              |---|---:|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n";
     for t in &found.reorders {
@@ -159,8 +160,6 @@ pub fn tables(found: &Sorting) -> String {
 }
 
 /// The middle of a number of measurements, in milliseconds.
-fn median(mut seconds: Vec<f64>) -> f64 {
-    seconds.sort_by(f64::total_cmp);
-    let n = seconds.len();
-    if n == 0 { 0.0 } else { 500.0 * (seconds[(n - 1) / 2] + seconds[n / 2]) }
+fn median_ms(seconds: Vec<f64>) -> f64 {
+    1e3 * median(&seconds)
 }

@@ -1,6 +1,6 @@
 //! Whether rays that are sorted first are traced faster by more than it costs.
 
-use super::median;
+use super::median_ms;
 use super::scene::Scene;
 use crate::report::clock::timed;
 use serde::Serialize;
@@ -42,10 +42,13 @@ impl ReorderTimes {
     }
 }
 
-/// What rays are sorted by. Direction before origin made them slower by all methods; so do larger cells by `auto`, which takes blocks for coherent whose
-/// origins lie far apart.
-const KEYS: [(Reorder, f32); 3] =
-    [(Reorder::Origin, RayHash::CELL), (Reorder::Hash, RayHash::CELL), (Reorder::Hash, 1.0 / 64.0)];
+/// What rays are sorted by.
+const KEYS: [(Reorder, f32); 4] = [
+    (Reorder::Origin, RayHash::CELL),
+    (Reorder::Hash, RayHash::CELL),
+    (Reorder::Hash, 1.0 / 64.0),
+    (Reorder::Direction, RayHash::CELL),
+];
 
 /// Times methods on rays in batches of a size, unsorted and sorted.
 pub fn measure(scene: &Scene, rays: &RayBatch, batch: usize, repeat: usize) -> Result<Vec<ReorderTimes>, Error> {
@@ -79,9 +82,9 @@ pub fn measure(scene: &Scene, rays: &RayBatch, batch: usize, repeat: usize) -> R
             }
         }
         for ((by, cell), stages) in KEYS.into_iter().zip(stages) {
-            let [order, gather, trace, back] = stages.seconds.map(median);
+            let [order, gather, trace, back] = stages.seconds.map(median_ms);
             let rays = format!("{} in {}", rays.len(), batches.len());
-            let (unsorted, run) = (median(unsorted.clone()), all.len() as f64 / stages.runs.max(1) as f64);
+            let (unsorted, run) = (median_ms(unsorted.clone()), all.len() as f64 / stages.runs.max(1) as f64);
             let (scene, by, same) = (scene.name.clone(), by.name(), !stages.different);
             let method = *name;
             table.push(ReorderTimes { scene, rays, method, by, cell, run, order, gather, trace, back, unsorted, same });
