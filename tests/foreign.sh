@@ -103,8 +103,8 @@ else
             need wine64 "apt install wine64"
             export "${variable}_RUNNER=wine64" ;;
         darwin) ;;
-        asan) missing+=("a nightly toolchain: RUSTFLAGS=-Zsanitizer=address cargo +nightly test --target $triple -p simd") ;;
-        msan) missing+=("a nightly toolchain: RUSTFLAGS=-Zsanitizer=memory cargo +nightly test -Zbuild-std --target $triple -p simd") ;;
+        asan) missing+=("a nightly toolchain, then:" "RUSTFLAGS=-Zsanitizer=address SIMD_TEST_LEVELS=$levels cargo +nightly test --target $triple -p simd ${what[*]} -- ${filter[*]}") ;;
+        msan) missing+=("rustup +nightly component add rust-src, then:" "RUSTFLAGS=-Zsanitizer=memory SIMD_TEST_LEVELS=$levels cargo +nightly test -Zbuild-std --target $triple -p simd ${what[*]} -- ${filter[*]}") ;;
         *)
             need "qemu-$qemu" "apt install qemu-user"
             export "${variable}_RUNNER=qemu-$qemu -L /usr/$gnu" ;;

@@ -13,7 +13,8 @@ use std::sync::OnceLock;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Isa {
-    /// Plain Rust, one lane at a time; LLVM may vectorize it again.
+    /// Plain Rust, one lane at a time; LLVM may vectorize it again. The same bits as all others, but on 32-bit x86 without SSE2 (target i586),
+    /// whose FPU rounds otherwise.
     Scalar,
     /// Plain Rust, with LLVM kept from vectorizing: the honest emulation that speed-ups are measured against.
     Serial,
