@@ -24,12 +24,13 @@ END
 }
 
 # triple: Rust's name; gnu: the name of GNU's compiler and libraries; arch: Debian's; qemu: the emulator's.
-# levels: what has to run (the tests of simd read it). exact: whether the first CPU also traces.
+# levels: what has to run (the tests of simd read it). exact: whether the first CPU also traces, and which of those tests it runs.
 # what, filter: which tests of simd, as arguments of cargo and of the tests.
 subcommand=test
 cpus=(default)
 levels=scalar
 exact=false
+traces=(--test exact -- golden awkward flat)
 features=
 gnu= arch= qemu=
 # `from_env` starts its own program again, which an emulated process cannot.
@@ -59,7 +60,8 @@ case ${1:-} in
         # The intrinsics are unstable; this makes any compiler take them.
         export RUSTC_BOOTSTRAP=1 ;;
     riscv64) triple=riscv64gc-unknown-linux-gnu gnu=riscv64-linux-gnu arch=riscv64 qemu=riscv64 ;;
-    wasm) triple=wasm32-unknown-unknown levels=scalar,wasm features=+simd128 ;;
+    wasm) triple=wasm32-unknown-unknown levels=scalar,wasm features=+simd128
+        exact=true traces=(--test exact --test hostile) ;;
     wasm-relaxed) triple=wasm32-unknown-unknown levels=scalar,wasm,wasm-relaxed features=+simd128,+relaxed-simd ;;
     wasm-scalar) triple=wasm32-unknown-unknown features=-simd128 ;;
     windows) triple=x86_64-pc-windows-gnu levels=serial,scalar,sse2 filter=() ;;
@@ -138,6 +140,6 @@ for cpu in "${QEMU_CPU:-${cpus[@]}}"; do
     fi
     if [ $subcommand = test ]; then "${run[@]}" -p simd "${what[@]}" -- "${filter[@]}"; else "${run[@]}" -p simd; fi
     # Emulation is slow: the scenes of the other tests would take half an hour.
-    if $exact; then "${run[@]}" -p tests --test exact -- golden awkward flat; fi
+    if $exact; then "${run[@]}" -p tests "${traces[@]}"; fi
     exact=false
 done
