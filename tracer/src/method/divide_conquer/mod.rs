@@ -30,7 +30,7 @@ pub enum Filtering {
     /// The rays are moved (section 3.1).
     #[default]
     Rays,
-    /// Their places are, the rays stay (Mora 2011): 1.3 to 2.9 times slower for the rays of a diffuse bounce (`bench afra`).
+    /// Their places are, the rays stay (Mora 2011): 1.2 to 2.7 times slower for the rays of a diffuse bounce (`bench afra`).
     Places,
 }
 
