@@ -50,7 +50,7 @@ pub fn all(report: &Report) -> Vec<Goal> {
                 .iter()
                 .filter(|times| times.method == "wide")
                 .map(|times| {
-                    let of = format!("{}, {} rays, {}, cell {:.4}", times.scene, times.rays, times.by, times.cell);
+                    let of = format!("{}, {} batches, {}, cell {:.4}", times.scene, times.rays, times.by, times.cell);
                     (of, Some(times.unsorted / times.charged()))
                 })
                 .collect(),
