@@ -138,7 +138,10 @@ fn the_same_bytes_whatever_traces() {
         .map(String::from),
     );
     for way in ways {
-        folder.run(&format!("trace balls:1 --rays rays.npy --hits hits.npy {way}"));
+        let out = folder.run(&format!("trace balls:1 --rays rays.npy --hits hits.npy {way}"));
+        let made =
+            if way.contains("divide-conquer") { "; no tree, triangles taken apart in " } else { " tree built in " };
+        assert!(out.contains(made), "{way}: {out}");
         assert!(folder.read("hits.npy") == first, "{way}");
     }
 }

@@ -40,7 +40,7 @@ pub enum MethodChoice {
     BreadthFirst,
     /// No tree: triangles are divided while all rays are traced, the method of the paper of 2012
     DivideConquer,
-    /// As many rays together as agree: the fastest for most rays, within a tenth of single8 for others; its tree takes a quarter longer to build
+    /// As many rays together as agree: the fastest for most rays; its tree takes a quarter longer to build
     Auto,
 }
 

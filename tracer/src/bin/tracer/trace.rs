@@ -183,9 +183,13 @@ fn text(r: &Report, args: &Args) -> String {
     let Report {
         scene, build, build_ms, trace_ms, wall_ms, mrays_per_s, level, method, reorder, width, threads, ..
     } = r;
+    let made = match *build {
+        Structure::NONE => "no tree, triangles taken apart".into(),
+        _ => format!("{build} tree built"),
+    };
     format!(
         "\
-scene     {scene}, {triangles} triangles; {build} tree built in {build_ms:.0} ms
+scene     {scene}, {triangles} triangles; {made} in {build_ms:.0} ms
 traced    {rays} rays, {hits} hit; level {level}, method {method}, reorder {reorder}, {width} lanes, {threads} threads
 time      {trace_ms:.2} ms of CPU, {wall_ms:.2} ms on the clock: {mrays_per_s:.2} Mrays/s
 wrote     {}

@@ -55,7 +55,7 @@ impl Built {
 /// What a method goes through, and what it took.
 pub struct Structure {
     pub tree: Tree,
-    /// The builder's name; `none` where the method wants no tree.
+    /// The builder's name; [`Structure::NONE`] where the method wants no tree.
     pub build: &'static str,
     /// Of the binary tree.
     pub nodes: usize,
@@ -64,9 +64,12 @@ pub struct Structure {
 }
 
 impl Structure {
+    /// In place of a builder's name.
+    pub const NONE: &str = "none";
+
     /// For a method; the binary tree is asked for if it wants one.
     pub fn new(choice: MethodChoice, mesh: &Mesh, built: impl FnOnce() -> Result<Built, Error>) -> Result<Self, Error> {
-        let (mut build, mut nodes, mut before, mut start) = ("none", 0, 0.0, Instant::now());
+        let (mut build, mut nodes, mut before, mut start) = (Self::NONE, 0, 0.0, Instant::now());
         let tree = choice.tree(mesh, || {
             let Built { bvh, name, ms } = built()?;
             (build, nodes, before, start) = (name, bvh.nodes.len(), ms, Instant::now());

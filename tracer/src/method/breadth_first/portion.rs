@@ -141,44 +141,22 @@ impl BreadthFirst<'_> {
         let (frusta, width) = (&*frusta, self.width.lanes(level));
         let mut begin = 0;
         // The packets all of whose frusta are through.
-        let mut intersect = |leaves: &mut Leaves, done: usize| {
+        let mut intersect = |captured: &mut Leaves, done: usize| {
             stages.traversal += clock.lap();
             let end = frusta.ends.partition_point(|&end| end as usize <= done);
             if end > begin {
-                let (which, leaves_of, results) = (begin..end, &*leaves, &mut *results);
+                let (which, leaves, results) = (begin..end, &*captured, &mut *results);
                 if count {
                     let count = Counters::default();
-                    let job = Intersect::<Q, _> {
-                        bvh,
-                        tree,
-                        space,
-                        rays,
-                        results,
-                        runs,
-                        which,
-                        frusta,
-                        leaves: leaves_of,
-                        count,
-                    };
+                    let job = Intersect::<Q, _> { bvh, tree, space, rays, results, runs, which, frusta, leaves, count };
                     // The work is the same at every level.
                     counters = counters + lanes::run_once(width, job);
                 } else {
                     let count = NoCount;
-                    let job = Intersect::<Q, _> {
-                        bvh,
-                        tree,
-                        space,
-                        rays,
-                        results,
-                        runs,
-                        which,
-                        frusta,
-                        leaves: leaves_of,
-                        count,
-                    };
+                    let job = Intersect::<Q, _> { bvh, tree, space, rays, results, runs, which, frusta, leaves, count };
                     lanes::run_plain_if_emulated(level, width, job);
                 }
-                counters.frusta.leaves += leaves.forget(frusta.ends[end - 1] as usize) as u64;
+                counters.frusta.leaves += captured.forget(frusta.ends[end - 1] as usize) as u64;
                 begin = end;
             }
             stages.intersection += clock.lap();

@@ -85,7 +85,8 @@ pub struct Config {
     pub crop: Option<Crop>,
     /// Paths for each pixel; a single one goes through the middle.
     pub samples: u32,
-    /// No sample is begun after this time; the first is always taken. The picture is that of as many samples, bit for bit.
+    /// No sample is begun after this time; the first is always taken. The picture is that of as many samples, bit for bit. (WebAssembly in a browser has
+    /// no clock: there is no limit there.)
     pub time_limit: Option<Duration>,
     /// Of the random numbers.
     pub seed: u64,
