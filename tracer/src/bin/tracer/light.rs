@@ -3,7 +3,7 @@
 use crate::args::BuildOptions;
 use crate::console::Console;
 use crate::cost::Cost;
-use crate::method::{MethodChoice, reordered};
+use crate::method::reordered;
 use crate::picture::{self, Kind};
 use crate::render::Args;
 use crate::report::{Subject, Written};
@@ -251,7 +251,7 @@ pub fn picture(args: &Args, work: &Workload, structure: &Structure, console: &Co
         Some(map) => Scenery::in_environment(scene, map),
         None => Scenery::new(scene, &camera),
     };
-    let choice = args.trace.method(MethodChoice::Auto)?;
+    let choice = structure.choice;
     let method = choice.over(&structure.tree, config.level, config.lanes, args.trace.form());
     let reorder = args.trace.reorder.reorder;
     let method = reordered(method, &scene.mesh.bounds(), config.level, reorder);

@@ -114,7 +114,7 @@ pub fn picture(args: &Args, work: &Workload, structure: &Structure, console: &Co
     let camera = args.picture.camera.unwrap_or_else(|| scene.camera_or_default());
     let (lanes, shadows) = (args.trace.width, args.picture.shadows);
     let settings = Settings { width: size.width, height: size.height, level, lanes, shadows };
-    let choice = args.trace.method(MethodChoice::Packet)?;
+    let choice = structure.choice;
     let method = choice.over(&structure.tree, level, lanes, args.trace.form());
     let reorder = args.trace.reorder.reorder;
     let method = reordered(method, &scene.mesh.bounds(), level, reorder);

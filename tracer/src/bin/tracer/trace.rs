@@ -109,7 +109,7 @@ fn trace(
     console: &Console,
 ) -> Result<Report, Error> {
     let (level, _) = args.trace.level.choose()?;
-    let choice = args.trace.method(MethodChoice::Auto)?;
+    let choice = structure.choice;
     let method = choice.over(&structure.tree, level, args.trace.width, args.trace.form());
     let reorder = args.trace.reorder.reorder;
     let method = reordered(method, bounds, level, reorder);

@@ -54,6 +54,8 @@ impl Built {
 
 /// What a method goes through, and what it took.
 pub struct Structure {
+    /// The method that it is for.
+    pub choice: MethodChoice,
     pub tree: Tree,
     /// The builder's name; [`Structure::NONE`] where the method wants no tree.
     pub build: &'static str,
@@ -75,7 +77,7 @@ impl Structure {
             (build, nodes, before, start) = (name, bvh.nodes.len(), ms, Instant::now());
             Ok(bvh)
         })?;
-        Ok(Self { tree, build, nodes, build_ms: before + ms(start.elapsed()) })
+        Ok(Self { choice, tree, build, nodes, build_ms: before + ms(start.elapsed()) })
     }
 }
 
